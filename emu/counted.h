@@ -1,0 +1,163 @@
+// Counted<T>: a scalar whose operators count, and the thread's execution state that the counts go to.
+//
+// One operation of a group counts once in `pending`; when the set of active lanes changes, pending is
+// multiplied by the number of active lanes and moved to `total`. So a count never depends on how
+// invocations were grouped into lanes, and straight-line code costs a few additions per group.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/lanes.h"
+
+#include <array>
+
+namespace tessemu {
+
+/// Floating-point operations. Sign changes, select, abs and floor are free, as source modifiers and
+/// moves are on hardware; min and max count as one comparison.
+struct FlopCount {
+    std::uint64_t add = 0, mul = 0, mad = 0, div = 0, sqrt = 0, rsqrt = 0, compare = 0, unused = 0;
+
+    constexpr FlopCount& operator+=(FlopCount const& o)
+    {
+        add += o.add, mul += o.mul, mad += o.mad, div += o.div;
+        sqrt += o.sqrt, rsqrt += o.rsqrt, compare += o.compare;
+        return *this;
+    }
+    friend constexpr FlopCount operator+(FlopCount a, FlopCount const& b) { return a += b; }
+    friend constexpr FlopCount operator*(FlopCount a, std::uint64_t n)
+    {
+        return {a.add * n, a.mul * n, a.mad * n, a.div * n, a.sqrt * n, a.rsqrt * n, a.compare * n};
+    }
+    friend constexpr bool operator==(FlopCount const&, FlopCount const&) = default;
+};
+
+/// LOOP10's convention: multiplications and divisions count, additions do not.
+constexpr std::uint64_t flops_loop10(FlopCount const& c) { return c.mul + c.mad + c.div; }
+
+/// Fetches of one resource by one thread.
+struct FetchSlot;
+
+/// The state of the group of invocations that the thread is running.
+struct Execution {
+    FlopCount pending{};            ///< counted per group, since the active lanes last changed
+    FlopCount total{};              ///< counted per invocation
+    std::uint32_t active_bits = 1;  ///< bit i: lane i runs
+    std::uint32_t active_lanes = 1; ///< popcount of active_bits
+    FetchSlot* buffers = nullptr;   ///< the stage's buffer slots, by slot number
+
+    void activate(std::uint32_t bits)
+    {
+        if (bits == active_bits) return;
+        total += pending * active_lanes;
+        pending = {};
+        active_bits = bits;
+        active_lanes = std::uint32_t(std::popcount(bits));
+    }
+    FlopCount take()
+    {
+        FlopCount const c = total + pending * active_lanes;
+        total = pending = {};
+        return c;
+    }
+};
+constinit inline thread_local Execution execution{};
+
+template <class T> struct Counted {
+    T value;
+
+    Counted() = default;
+    Counted(T v) : value(v) {}
+    Counted(float v)
+        requires(!std::same_as<T, float>)
+        : value(v)
+    {}
+    explicit Counted(int_of<T> i)
+        requires(!std::same_as<int_of<T>, std::int32_t>)
+        : value(T(i))
+    {}
+
+    friend Counted operator+(Counted a, Counted b)
+    {
+        ++execution.pending.add;
+        return T(a.value + b.value);
+    }
+    friend Counted operator-(Counted a, Counted b)
+    {
+        ++execution.pending.add;
+        return T(a.value - b.value);
+    }
+    friend Counted operator*(Counted a, Counted b)
+    {
+        ++execution.pending.mul;
+        return T(a.value * b.value);
+    }
+    friend Counted operator/(Counted a, Counted b)
+    {
+        ++execution.pending.div;
+        return T(a.value / b.value);
+    }
+    friend Counted operator-(Counted a) { return T(-a.value); }
+    friend Counted mad(Counted a, Counted b, Counted c)
+    {
+        ++execution.pending.mad;
+        return T(mad(a.value, b.value, c.value));
+    }
+    friend Counted sqrt(Counted a)
+    {
+        ++execution.pending.sqrt;
+        return T(sqrt(a.value));
+    }
+    friend Counted floor(Counted a) { return T(floor(a.value)); }
+    friend Counted abs(Counted a) { return T(abs(a.value)); }
+    friend Counted min(Counted a, Counted b)
+    {
+        ++execution.pending.compare;
+        return T(min(a.value, b.value));
+    }
+    friend Counted max(Counted a, Counted b)
+    {
+        ++execution.pending.compare;
+        return T(max(a.value, b.value));
+    }
+    friend mask_of<T> operator<(Counted a, Counted b)
+    {
+        ++execution.pending.compare;
+        return a.value < b.value;
+    }
+    friend mask_of<T> operator>(Counted a, Counted b)
+    {
+        ++execution.pending.compare;
+        return a.value > b.value;
+    }
+    friend mask_of<T> operator<=(Counted a, Counted b)
+    {
+        ++execution.pending.compare;
+        return a.value <= b.value;
+    }
+    friend mask_of<T> operator>=(Counted a, Counted b)
+    {
+        ++execution.pending.compare;
+        return a.value >= b.value;
+    }
+    friend mask_of<T> operator==(Counted a, Counted b)
+    {
+        ++execution.pending.compare;
+        return a.value == b.value;
+    }
+    friend mask_of<T> operator!=(Counted a, Counted b)
+    {
+        ++execution.pending.compare;
+        return a.value != b.value;
+    }
+    friend Counted select(mask_of<T> m, Counted a, Counted b)
+    {
+        return T(select(m, a.value, b.value));
+    }
+};
+
+template <class T> struct ScalarTraits<Counted<T>> : ScalarTraits<T> {
+    static constexpr bool kCounted = true;
+};
+
+} // namespace tessemu

@@ -1,0 +1,37 @@
+// Errors that tessemu throws at its public edge.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+namespace tessemu {
+
+/// Base of every error; what() names the thing, its value and the limit.
+struct Error : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// A limit of Direct3D 11, or of a scheme, is exceeded.
+struct LimitError : Error {
+    LimitError(std::string const& thing, std::uint64_t value_, std::uint64_t limit_)
+        : Error(thing + " is " + std::to_string(value_) + ", the limit is " +
+                std::to_string(limit_)),
+          value(value_), limit(limit_)
+    {}
+    std::uint64_t value, limit;
+};
+
+/// A file cannot be read or holds something that is not valid.
+struct FormatError : Error {
+    FormatError(std::string const& file_, int line_, std::string const& what)
+        : Error(file_ + (line_ > 0 ? ":" + std::to_string(line_) : "") + ": " + what), file(file_),
+          line(line_)
+    {}
+    std::string file;
+    int line; ///< counted from 1; 0: the whole file
+};
+
+} // namespace tessemu

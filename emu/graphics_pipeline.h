@@ -1,0 +1,77 @@
+// The pipeline: stages bound together, checked against Direct3D 11's limits, and drawn with.
+//
+//     IA -> vertex cache -> VS -> HS -> tessellator -> DS -> (GS, SO) -> assembly -> raster -> PS -> OM
+//
+// Results equal serial execution in submission order, whatever the number of threads (R1). A draw
+// streams patches in waves, so memory does not grow with the number of patches. Geometry shader,
+// stream output and compute shader have their places between the stages here and come later.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/domain_shader.h"
+#include "emu/graphics_state.h"
+#include "emu/hull_shader.h"
+#include "emu/input_assembler.h"
+#include "emu/parallel.h"
+#include "emu/pixel_shader.h"
+#include "emu/vertex_cache.h"
+#include "emu/vertex_shader.h"
+
+namespace tessemu {
+
+/// Programs and state. Hull and domain shader are both there or both absent (R3).
+struct GraphicsPipelineDesc {
+    std::shared_ptr<VertexProgram const> vertex_shader;
+    std::shared_ptr<HullProgram const> hull_shader;
+    std::shared_ptr<DomainProgram const> domain_shader;
+    std::shared_ptr<PixelProgram const> pixel_shader; ///< none: depth only
+    Partitioning partitioning = Partitioning::FractionalOdd;
+    OutputPrimitive output_primitive = OutputPrimitive::TriangleCw;
+    int input_control_points = 0; ///< of the patch topology that is drawn
+};
+
+class GraphicsPipeline {
+public:
+    /// Checks what D3D11 checks when a pipeline is created. Throws LimitError or Error that names the
+    /// stage, the value and the limit.
+    explicit GraphicsPipeline(GraphicsPipelineDesc desc);
+    GraphicsPipelineDesc const& desc() const { return desc_; }
+
+private:
+    GraphicsPipelineDesc desc_;
+};
+
+/// Where and how triangles are drawn.
+struct RasterTarget {
+    RenderTarget* target;
+    Viewport viewport;
+    RasterizerState rasterizer;
+};
+
+/// A tessellated patch as the domain shader left it.
+struct ShadedPatch {
+    std::uint32_t primitive_id;
+    DomainPoints const* points; ///< domain points and connectivity
+    float const* outputs;       ///< component k of point i at [k * stride + i]
+    std::size_t stride;
+};
+
+/// Receives shaded patches one by one in submission order.
+using PatchVisitor = std::function<void(ShadedPatch const&)>;
+
+/// Receives (done, all) primitives now and then.
+using DrawProgress = std::function<void(std::size_t, std::size_t)>;
+
+struct DrawOptions {
+    VertexCacheModel vertex_cache;
+    DrawProgress progress;
+};
+
+/// Draws. Either part may be absent: without `raster` rasterization is off, without `visit` nobody
+/// looks at the patches.
+DrawStatistics draw(GraphicsPipeline const& pipeline, DrawCall const& call,
+                    RasterTarget const* raster, PatchVisitor const& visit, ThreadPool const& threads,
+                    DrawOptions const& options = {});
+
+} // namespace tessemu

@@ -1,0 +1,176 @@
+// Lanes<N>: one float per shader invocation, N invocations in step, on the compilers' vector extension.
+//
+// Mask<N> is the result of a comparison and is not a bool: a shader cannot branch on lanes, it selects.
+// IntLanes<N> holds indices. Every operation is the IEEE one lane by lane, so a lane's bits do not
+// depend on N.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/scalar.h"
+
+#if defined(__AVX__)
+#include <immintrin.h>
+#endif
+
+namespace tessemu {
+
+namespace detail {
+// Through a helper struct: g++ drops the attribute on a dependent typedef at its point of use.
+template <int N> struct Raw {
+    typedef float f32 __attribute__((vector_size(4 * N)));
+    typedef std::int32_t i32 __attribute__((vector_size(4 * N)));
+};
+} // namespace detail
+
+template <int N> struct Mask {
+    using Raw = typename detail::Raw<N>::i32;
+    Raw raw; // 0 or -1
+
+    Mask() = default;
+    Mask(Raw r) : raw(r) {}
+    explicit Mask(bool b) : raw(Raw{} - int(b)) {}
+    friend Mask operator&(Mask a, Mask b) { return Raw(a.raw & b.raw); }
+    friend Mask operator|(Mask a, Mask b) { return Raw(a.raw | b.raw); }
+    friend Mask operator!(Mask a) { return Raw(~a.raw); }
+
+    /// Bit i is lane i.
+    std::uint32_t bits() const
+    {
+#if defined(__AVX512DQ__)
+        if constexpr (N == 16) return _mm512_movepi32_mask(__m512i(raw));
+#endif
+#if defined(__AVX__)
+        if constexpr (N == 8) return std::uint32_t(_mm256_movemask_ps(__m256(raw)));
+#endif
+        if constexpr (N == 4) return std::uint32_t(_mm_movemask_ps(__m128(raw)));
+        std::uint32_t b = 0;
+        for (int i = 0; i < N; ++i) b |= std::uint32_t(raw[i] & 1) << i;
+        return b;
+    }
+
+    /// The first n lanes.
+    static Mask first(int n)
+    {
+        Raw r;
+        for (int i = 0; i < N; ++i) r[i] = i < n ? -1 : 0;
+        return r;
+    }
+    friend bool any(Mask m) { return m.bits() != 0; }
+    friend bool all(Mask m) { return m.bits() == (N == 32 ? ~0u : (1u << N) - 1); }
+};
+
+template <int N> struct IntLanes {
+    using Raw = typename detail::Raw<N>::i32;
+    Raw raw;
+
+    IntLanes() = default;
+    IntLanes(Raw r) : raw(r) {}
+    IntLanes(std::int32_t x) : raw(x - Raw{}) {}
+    /// 0, 1, 2, ...
+    static IntLanes iota()
+    {
+        Raw r;
+        for (int i = 0; i < N; ++i) r[i] = i;
+        return r;
+    }
+    friend IntLanes operator+(IntLanes a, IntLanes b) { return a.raw + b.raw; }
+    friend IntLanes operator-(IntLanes a, IntLanes b) { return a.raw - b.raw; }
+    friend IntLanes operator*(IntLanes a, IntLanes b) { return a.raw * b.raw; }
+    friend IntLanes operator&(IntLanes a, IntLanes b) { return a.raw & b.raw; }
+    friend IntLanes operator|(IntLanes a, IntLanes b) { return a.raw | b.raw; }
+    friend IntLanes operator^(IntLanes a, IntLanes b) { return a.raw ^ b.raw; }
+    friend IntLanes operator<<(IntLanes a, IntLanes b) { return a.raw << b.raw; }
+    friend IntLanes operator>>(IntLanes a, IntLanes b) { return a.raw >> b.raw; }
+    friend Mask<N> operator==(IntLanes a, IntLanes b) { return Mask<N>(a.raw == b.raw); }
+    friend Mask<N> operator!=(IntLanes a, IntLanes b) { return Mask<N>(a.raw != b.raw); }
+    friend Mask<N> operator<(IntLanes a, IntLanes b) { return Mask<N>(a.raw < b.raw); }
+    friend Mask<N> operator>(IntLanes a, IntLanes b) { return Mask<N>(a.raw > b.raw); }
+    friend Mask<N> operator<=(IntLanes a, IntLanes b) { return Mask<N>(a.raw <= b.raw); }
+    friend Mask<N> operator>=(IntLanes a, IntLanes b) { return Mask<N>(a.raw >= b.raw); }
+    friend IntLanes select(Mask<N> m, IntLanes a, IntLanes b)
+    {
+        return Raw((a.raw & m.raw) | (b.raw & ~m.raw));
+    }
+};
+
+template <int N> struct Lanes {
+    using Raw = typename detail::Raw<N>::f32;
+    using Bits = typename detail::Raw<N>::i32;
+    Raw raw;
+
+    Lanes() = default;
+    Lanes(Raw r) : raw(r) {}
+    Lanes(float x) : raw(x - Raw{}) {} // minus: x + 0 would lose the sign of -0
+    explicit Lanes(IntLanes<N> i) : raw(__builtin_convertvector(i.raw, Raw)) {}
+
+    static Lanes load(float const* p)
+    {
+        Lanes l;
+        __builtin_memcpy(&l.raw, p, sizeof l.raw);
+        return l;
+    }
+    void store(float* p) const { __builtin_memcpy(p, &raw, sizeof raw); }
+
+    friend Lanes operator+(Lanes a, Lanes b) { return a.raw + b.raw; }
+    friend Lanes operator-(Lanes a, Lanes b) { return a.raw - b.raw; }
+    friend Lanes operator*(Lanes a, Lanes b) { return a.raw * b.raw; }
+    friend Lanes operator/(Lanes a, Lanes b) { return a.raw / b.raw; }
+    friend Lanes operator-(Lanes a) { return -a.raw; }
+    friend Mask<N> operator<(Lanes a, Lanes b) { return Mask<N>(a.raw < b.raw); }
+    friend Mask<N> operator>(Lanes a, Lanes b) { return Mask<N>(a.raw > b.raw); }
+    friend Mask<N> operator<=(Lanes a, Lanes b) { return Mask<N>(a.raw <= b.raw); }
+    friend Mask<N> operator>=(Lanes a, Lanes b) { return Mask<N>(a.raw >= b.raw); }
+    friend Mask<N> operator==(Lanes a, Lanes b) { return Mask<N>(a.raw == b.raw); }
+    friend Mask<N> operator!=(Lanes a, Lanes b) { return Mask<N>(a.raw != b.raw); }
+
+    friend Lanes select(Mask<N> m, Lanes a, Lanes b) { return Lanes(Raw(m.raw ? a.raw : b.raw)); }
+    friend Lanes sqrt(Lanes a)
+    {
+        Lanes r;
+        for (int i = 0; i < N; ++i) r.raw[i] = __builtin_sqrtf(a.raw[i]);
+        return r;
+    }
+    friend Lanes floor(Lanes a)
+    {
+        Lanes r;
+        for (int i = 0; i < N; ++i) r.raw[i] = __builtin_floorf(a.raw[i]);
+        return r;
+    }
+    friend Lanes abs(Lanes a) { return Raw(Bits(a.raw) & 0x7fffffff); }
+    friend Lanes min(Lanes a, Lanes b)
+    {
+        Lanes const equal = Raw(Bits(a.raw) | Bits(b.raw));
+        return select(a < b, a, select(b < a, b, select(a == b, equal, select(a == a, a, b)))) +
+               Lanes(-0.0f);
+    }
+    friend Lanes max(Lanes a, Lanes b)
+    {
+        Lanes const equal = Raw(Bits(a.raw) & Bits(b.raw));
+        return select(a > b, a, select(b > a, b, select(a == b, equal, select(a == a, a, b)))) +
+               Lanes(-0.0f);
+    }
+    friend Lanes mad(Lanes a, Lanes b, Lanes c)
+    {
+        Lanes r;
+        for (int i = 0; i < N; ++i) r.raw[i] = fused_multiply_add(a.raw[i], b.raw[i], c.raw[i]);
+        return r;
+    }
+};
+
+template <int N> struct ScalarTraits<Lanes<N>> {
+    using Storage = float;
+    using Mask = tessemu::Mask<N>;
+    using Int = IntLanes<N>;
+    static constexpr int kLanes = N;
+    static constexpr bool kCounted = false, kTally = false, kSites = false;
+};
+
+/// The widest lanes that the build's instruction set fills.
+#if defined(__AVX512F__)
+inline constexpr int kNativeLanes = 16;
+#else
+inline constexpr int kNativeLanes = 8;
+#endif
+
+} // namespace tessemu

@@ -1,0 +1,288 @@
+// Memory as a shader sees it: typed buffers, textures and control points, every read counted.
+//
+// A shader reaches memory only through these views; indices are uniform or per lane. Reads out of
+// range return zeros (rules R142, R143) and are counted all the same.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/control_flow.h"
+
+#include <atomic>
+#include <cassert>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tessemu {
+
+enum class ResourceKind { Vertex, Index, ControlPoint, PatchConstant, Buffer, Texture };
+
+/// "vertex", "index", "control_point", "patch_constant", "buffer", "texture"
+char const* name_of(ResourceKind kind);
+
+/// What a stage read of one resource. unique_bytes counts each element once per draw (control points
+/// and patch constants: once per patch and stage run).
+struct FetchStatistics {
+    std::string resource;
+    ResourceKind kind = ResourceKind::Buffer;
+    std::uint64_t count = 0, bytes = 0, unique_bytes = 0;
+
+    friend bool operator==(FetchStatistics const&, FetchStatistics const&) = default;
+};
+
+/// D3D11 gives a stage 128 shader resource slots; no shader here needs more than these.
+inline constexpr int kBufferSlots = 8;
+
+/// Elements of a resource that were read, shared by all threads of a draw.
+class TouchedElements {
+public:
+    explicit TouchedElements(std::size_t elements) : words_((elements + 63) / 64) {}
+
+    void mark(std::size_t element)
+    {
+        std::atomic<std::uint64_t>& word = words_[element / 64];
+        std::uint64_t const bit = std::uint64_t(1) << (element % 64);
+        if (!(word.load(std::memory_order_relaxed) & bit))
+            word.fetch_or(bit, std::memory_order_relaxed);
+    }
+    std::uint64_t count() const
+    {
+        std::uint64_t n = 0;
+        for (auto const& w : words_) n += std::uint64_t(std::popcount(w.load()));
+        return n;
+    }
+
+private:
+    std::vector<std::atomic<std::uint64_t>> words_;
+};
+
+/// One thread's counter of one buffer slot.
+struct FetchSlot {
+    std::uint64_t count = 0;
+    TouchedElements* touched = nullptr;
+};
+
+/// A buffer bound to a slot: what a stage reports its fetches under.
+struct ResourceInfo {
+    std::string name;
+    ResourceKind kind = ResourceKind::Buffer;
+    int slot = 0;
+    std::size_t elements = 0;
+    std::size_t element_bytes = 0;
+};
+
+namespace detail {
+template <class T> void count_fetch(int slot, std::int32_t index, std::size_t size)
+{
+    if constexpr (ScalarTraits<T>::kCounted) {
+        if (!execution.buffers) return;
+        FetchSlot& s = execution.buffers[slot];
+        s.count += execution.active_lanes;
+        if (s.touched && std::size_t(index) < size) s.touched->mark(std::size_t(index));
+    }
+}
+template <class T, int N>
+void count_fetch(int slot, IntLanes<N> index, std::size_t size)
+{
+    if constexpr (ScalarTraits<T>::kCounted) {
+        if (!execution.buffers) return;
+        FetchSlot& s = execution.buffers[slot];
+        s.count += execution.active_lanes;
+        if (!s.touched) return;
+        for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
+            auto const i = std::size_t(index.raw[std::countr_zero(bits)]);
+            if (i < size) s.touched->mark(i);
+        }
+    }
+}
+} // namespace detail
+
+/// Typed buffer (D3D11: Buffer<float>, Buffer<uint>): `E` is float, double or an unsigned integer.
+template <class E> class Buffer {
+public:
+    Buffer() = default;
+    Buffer(std::span<E const> elements, int slot, std::string name)
+        : elements_(elements), slot_(slot), name_(std::move(name))
+    {
+        assert(slot >= 0 && slot < kBufferSlots);
+    }
+
+    std::span<E const> elements() const { return elements_; }
+    int slot() const { return slot_; }
+    ResourceInfo info() const
+    {
+        return {name_, ResourceKind::Buffer, slot_, elements_.size(), sizeof(E)};
+    }
+
+private:
+    std::span<E const> elements_;
+    int slot_ = 0;
+    std::string name_;
+};
+
+/// buffer[i], the same element for every invocation; 0 when i is out of range.
+template <class T, class E> auto load(Buffer<E> const& buffer, std::int32_t i)
+{
+    using Result = std::conditional_t<std::floating_point<E>, T, std::int32_t>;
+    std::span<E const> const e = buffer.elements();
+    detail::count_fetch<T>(buffer.slot(), i, e.size());
+    E const value = std::size_t(i) < e.size() ? e[std::size_t(i)] : E(0);
+    if constexpr (std::floating_point<E>)
+        return Result(storage_of<T>(value));
+    else
+        return Result(value);
+}
+
+/// buffer[i], an element per lane; 0 in the lanes whose i is out of range.
+template <class T, class E, int N> auto load(Buffer<E> const& buffer, IntLanes<N> i)
+{
+    std::span<E const> const e = buffer.elements();
+    detail::count_fetch<T>(buffer.slot(), i, e.size());
+    if constexpr (std::floating_point<E>) {
+        Lanes<N> r(0.0f);
+        for (int k = 0; k < N; ++k)
+            if (std::size_t(i.raw[k]) < e.size()) r.raw[k] = e[std::size_t(i.raw[k])];
+        return T(r);
+    } else {
+        IntLanes<N> r(0);
+        for (int k = 0; k < N; ++k)
+            if (std::size_t(i.raw[k]) < e.size()) r.raw[k] = std::int32_t(e[std::size_t(i.raw[k])]);
+        return r;
+    }
+}
+
+/// 2D texture of float4 texels, rows from the top.
+class Texture2D {
+public:
+    Texture2D() = default;
+    Texture2D(std::span<float const> texels, int width, int height, int slot, std::string name)
+        : texels_(texels), width_(width), height_(height), slot_(slot), name_(std::move(name))
+    {
+        assert(texels.size() == std::size_t(width) * std::size_t(height) * 4);
+    }
+    int width() const { return width_; }
+    int height() const { return height_; }
+    int slot() const { return slot_; }
+    std::span<float const> texels() const { return texels_; }
+    ResourceInfo info() const
+    {
+        return {name_, ResourceKind::Texture, slot_, texels_.size() / 4, 4 * sizeof(float)};
+    }
+
+private:
+    std::span<float const> texels_;
+    int width_ = 0, height_ = 0, slot_ = 0;
+    std::string name_;
+};
+
+/// HLSL Load: texel (x, y) without filtering; zeros out of range (R142).
+template <class T> float4<T> load(Texture2D const& texture, int_of<T> x, int_of<T> y)
+{
+    int const width = texture.width(), height = texture.height();
+    auto const texel = [&](std::int32_t i, std::int32_t j) {
+        bool const in = i >= 0 && j >= 0 && i < width && j < height;
+        return in ? std::int32_t(j * width + i) : std::int32_t(-1);
+    };
+    auto const count = texture.texels().size() / 4;
+    float const* const data = texture.texels().data();
+    if constexpr (lanes_of<T> == 1) {
+        std::int32_t const i = texel(x, y);
+        detail::count_fetch<T>(texture.slot(), i, count);
+        if (i < 0) return {T(0), T(0), T(0), T(0)};
+        return load_record<float4<T>>(data + 4 * std::size_t(i));
+    } else {
+        constexpr int N = lanes_of<T>;
+        IntLanes<N> index(0);
+        for (int k = 0; k < N; ++k) index.raw[k] = texel(x.raw[k], y.raw[k]);
+        detail::count_fetch<T>(texture.slot(), index, count);
+        Lanes<N> c[4] = {0.0f, 0.0f, 0.0f, 0.0f};
+        for (int k = 0; k < N; ++k)
+            for (int m = 0; m < 4; ++m)
+                if (index.raw[k] >= 0) c[m].raw[k] = data[4 * std::size_t(index.raw[k]) + std::size_t(m)];
+        return {T(c[0]), T(c[1]), T(c[2]), T(c[3])};
+    }
+}
+
+/// Records of one patch (HLSL: InputPatch, OutputPatch, patch constants): each [] is a counted fetch
+/// of a whole record.
+///
+/// \tparam P  record, templated on the shader's scalar
+template <class P> class ControlPoints {
+    using T = scalar_of<P>;
+    static constexpr bool kCounted = ScalarTraits<T>::kCounted;
+
+public:
+    /// `count` records from `memory`, the same patch for every lane.
+    constexpr ControlPoints(storage_of<T> const* memory, int count) : memory_(memory), count_(count)
+    {}
+    /// For a compile-time tally: records without values; fetches are added to `*fetches`.
+    constexpr ControlPoints(FlopCount* sink, int count, std::uint64_t* fetches = nullptr)
+        requires(ScalarTraits<T>::kTally)
+        : sink_(sink), fetch_sink_(fetches), count_(count)
+    {}
+
+    static constexpr int kScalars = scalar_count<P>();
+    static constexpr std::size_t kRecordBytes = std::size_t(kScalars) * sizeof(storage_of<T>);
+
+    constexpr int size() const { return count_; }
+
+    constexpr P operator[](std::int32_t i) const
+    {
+        assert(i >= 0 && i < count_);
+        touch(i);
+        if constexpr (ScalarTraits<T>::kTally) {
+            if (fetch_sink_) ++*fetch_sink_;
+            P p{};
+            for_each_scalar(p, [&](auto& s) { s = T(1.0, sink_); });
+            return p;
+        } else {
+            return load_record<P>(memory_ + i * kScalars);
+        }
+    }
+
+    /// A record per lane.
+    template <int N> P operator[](IntLanes<N> i) const
+    {
+        if constexpr (kCounted) {
+            fetches_ += execution.active_lanes;
+            for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1)
+                touched_ |= std::uint64_t(1) << i.raw[std::countr_zero(bits)];
+        }
+        P p{};
+        int k = 0;
+        for_each_scalar(p, [&](auto& s) {
+            Lanes<N> v;
+            for (int lane = 0; lane < N; ++lane) {
+                int const index = i.raw[lane] >= 0 && i.raw[lane] < count_ ? i.raw[lane] : 0;
+                v.raw[lane] = memory_[index * kScalars + k];
+            }
+            s = T(v);
+            ++k;
+        });
+        return p;
+    }
+
+    /// Fetches counted through this view.
+    constexpr std::uint64_t fetches() const { return fetches_; }
+    /// Bit i: record i was read.
+    constexpr std::uint64_t touched() const { return touched_; }
+
+private:
+    constexpr void touch(std::int32_t i) const
+    {
+        if constexpr (kCounted) {
+            fetches_ += execution.active_lanes;
+            touched_ |= std::uint64_t(1) << (i & 63);
+        }
+    }
+
+    storage_of<T> const* memory_ = nullptr;
+    FlopCount* sink_ = nullptr;           // of a tally
+    std::uint64_t* fetch_sink_ = nullptr; // of a tally
+    int count_ = 0;
+    mutable std::uint64_t fetches_ = 0, touched_ = 0;
+};
+
+} // namespace tessemu

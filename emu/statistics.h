@@ -1,0 +1,105 @@
+// What a draw counted: Direct3D 11's pipeline statistics, and per stage operations and fetches.
+//
+// All are integers; sums do not depend on the schedule.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/memory.h"
+
+namespace tessemu {
+
+/// D3D11_QUERY_DATA_PIPELINE_STATISTICS (rules R156 to R164) and the hull shader's two phases.
+struct PipelineStatistics {
+    std::uint64_t IAVertices = 0, IAPrimitives = 0, VSInvocations = 0;
+    std::uint64_t HSInvocations = 0; ///< patches
+    std::uint64_t DSInvocations = 0; ///< once per domain point (I-2)
+    std::uint64_t GSInvocations = 0, GSPrimitives = 0;
+    std::uint64_t CInvocations = 0, CPrimitives = 0;
+    std::uint64_t PSInvocations = 0; ///< fragments that pass the early depth test (I-16)
+    std::uint64_t CSInvocations = 0;
+    std::uint64_t HSControlPointInvocations = 0;  ///< patches times output control points
+    std::uint64_t HSPatchConstantInvocations = 0; ///< patches times (fork instances + join)
+
+    PipelineStatistics& operator+=(PipelineStatistics const& o);
+    friend bool operator==(PipelineStatistics const&, PipelineStatistics const&) = default;
+};
+
+struct StageStatistics {
+    std::string stage;
+    std::uint64_t invocations = 0;
+    FlopCount flops;
+    std::vector<FetchStatistics> fetches;
+    std::uint64_t output_bytes = 0;
+
+    /// Adds the counts of another draw's same stage; resources are matched by name and kind.
+    StageStatistics& operator+=(StageStatistics const& o);
+    friend bool operator==(StageStatistics const&, StageStatistics const&) = default;
+};
+
+/// Stages in pipeline order: input_assembler, vertex_shader, hull_shader, tessellator, domain_shader,
+/// rasterizer, pixel_shader, output_merger.
+struct DrawStatistics {
+    PipelineStatistics pipeline;
+    std::vector<StageStatistics> stages;
+
+    DrawStatistics& operator+=(DrawStatistics const& o);
+    friend bool operator==(DrawStatistics const&, DrawStatistics const&) = default;
+};
+
+/// Counts of one stage by one worker, added up by item when the stage ends.
+struct StageCounters {
+    std::uint64_t invocations = 0;
+    FlopCount flops;
+    std::uint64_t input_fetches = 0, input_touched = 0;       ///< control points, vertices
+    std::uint64_t constant_fetches = 0, constant_touched = 0; ///< patch constants
+    std::uint64_t output_fetches = 0, output_touched = 0;     ///< a hull shader's own control points
+    std::array<std::uint64_t, kBufferSlots> buffer_fetches{};
+
+    StageCounters& operator+=(StageCounters const& o);
+};
+
+/// Elements of a stage's buffers that a draw touched, one per slot.
+class StageBuffers {
+public:
+    explicit StageBuffers(std::vector<ResourceInfo> resources);
+    std::array<FetchSlot, kBufferSlots> slots() const;
+    /// The buffers' rows of a stage's table.
+    void report(StageCounters const& counters, StageStatistics& out) const;
+
+private:
+    std::vector<ResourceInfo> resources_;
+    std::vector<std::unique_ptr<TouchedElements>> touched_;
+};
+
+/// A programmable stage's door: flushes denormals (R9), points the thread's counters at the stage, and
+/// on leaving adds what was counted to `counters`.
+class StageScope {
+public:
+    StageScope(StageCounters& counters, StageBuffers const& buffers, std::uint64_t site_seed = 0)
+        : counters_(counters), slots_(buffers.slots()), saved_(execution), saved_sites_(site_state)
+    {
+        execution = Execution{};
+        execution.buffers = slots_.data();
+        site_state = SiteState{site_seed, 0, 0};
+    }
+    ~StageScope()
+    {
+        counters_.flops += execution.take();
+        for (std::size_t i = 0; i < slots_.size(); ++i)
+            counters_.buffer_fetches[i] += slots_[i].count;
+        execution = saved_;
+        site_state = saved_sites_;
+    }
+    StageScope(StageScope const&) = delete;
+    StageScope& operator=(StageScope const&) = delete;
+
+private:
+    DenormalMode flush_{DenormalMode::Flush};
+    StageCounters& counters_;
+    std::array<FetchSlot, kBufferSlots> slots_;
+    Execution saved_;
+    SiteState saved_sites_;
+};
+
+} // namespace tessemu

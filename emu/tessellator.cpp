@@ -1,0 +1,551 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emu/tessellator.h"
+
+#include "emu/floating_point.h"
+#include "emu/lanes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tessemu {
+
+namespace {
+
+constexpr std::uint32_t kOne = kFixedOne, kHalf = kFixedOne / 2;
+constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
+
+// Half-edge positions 0..32 of the finest level in the order in which they come into being ("ruler
+// function", rule R62). rank(0) = 0, rank(1) = 32, and position 1 + (2m+1) 2^(4-b) has rank 2^b + m.
+constexpr std::array<std::uint32_t, 33> ruler_ranks()
+{
+    std::array<std::uint32_t, 33> rank{};
+    rank[1] = 32;
+    for (std::uint32_t b = 0; b < 5; ++b)
+        for (std::uint32_t m = 0; m < (1u << b); ++m)
+            rank[1 + (2 * m + 1) * (1u << (4 - b))] = (1u << b) + m;
+    return rank;
+}
+constexpr std::array<std::uint32_t, 33> kRank = ruler_ranks();
+
+constexpr std::array<std::uint32_t, 129> reciprocals()
+{
+    std::array<std::uint32_t, 129> r{};
+    for (std::uint32_t n = 1; n <= 128; ++n) r[n] = (2 * kOne + n) / (2 * n);
+    return r;
+}
+constexpr std::array<std::uint32_t, 129> kReciprocal = reciprocals(); // 65536 / n, to nearest
+
+constexpr std::uint32_t drop_highest_bit(std::uint32_t x) { return x & ~std::bit_floor(x); }
+
+// One factor's subdivided span: N positions, symmetric about the middle.
+struct Span {
+    bool odd;
+    std::uint32_t half_points, points; // on a half span, on the whole span
+    std::uint32_t frac, floor_reciprocal, ceil_reciprocal, split;
+
+    Span(std::uint32_t factor, bool odd_) : odd(odd_)
+    {
+        std::uint32_t h = (factor + 1) / 2;
+        if (odd || h == kHalf) h += kHalf;
+        std::uint32_t const fl = h >> 16;
+        frac = h & 0xffff;
+        std::uint32_t const ce = fl + (frac ? 1 : 0);
+        half_points = ce;
+        points = odd ? 2 * ce : 2 * ce + 1;
+        floor_reciprocal = kReciprocal[2 * fl - (odd ? 1 : 0)];
+        ceil_reciprocal = kReciprocal[2 * ce - (odd ? 1 : 0)];
+        if (frac == 0)
+            split = kNever;
+        else if (odd)
+            split = fl == 1 ? 0 : 2 * drop_highest_bit(fl - 1) + 1;
+        else
+            split = 2 * drop_highest_bit(fl) + 1;
+    }
+
+    // Interpolates between the patterns of the whole factors below and above.
+    std::uint32_t position(std::uint32_t p) const
+    {
+        bool const mirrored = p >= half_points;
+        std::uint32_t const q = mirrored ? points - 1 - p : p;
+        if (q == half_points) return kHalf; // the middle of an even span
+        std::uint32_t const on_ceil = q;
+        std::uint32_t const on_floor = q > split ? q - 1 : q;
+        std::uint32_t const x = (on_floor * floor_reciprocal * (kOne - frac) +
+                                 on_ceil * ceil_reciprocal * frac + kHalf) >>
+                                16;
+        return mirrored ? kOne - x : x;
+    }
+
+    std::uint32_t stitch_half() const { return half_points - (odd ? 1 : 0); }
+};
+
+// All positions of a span at once, so that rings read them from a table.
+struct Positions {
+    Span span;
+    std::array<std::uint32_t, 66> at;
+
+    explicit Positions(std::uint32_t factor, bool odd) : span(factor, odd)
+    {
+        for (std::uint32_t p = 0; p < span.points; ++p) at[p] = span.position(p);
+    }
+    std::uint32_t operator[](std::uint32_t p) const { return at[p]; }
+};
+
+// A row of point indices as the stitches walk it: start, start + step, ..., the last one given apart
+// because the last side of a ring ends at the ring's first point.
+struct Row {
+    std::uint32_t first, count, last;
+    std::int32_t step = 1;
+    std::uint32_t operator[](std::uint32_t i) const
+    {
+        return i + 1 == count ? last : first + std::uint32_t(step) * i;
+    }
+};
+
+class Triangles {
+public:
+    Triangles(std::vector<std::uint32_t>& indices, bool ccw) : out_(indices), ccw_(ccw) {}
+
+    void add(std::uint32_t a, std::uint32_t b, std::uint32_t c)
+    {
+        std::uint32_t const t[3] = {a, ccw_ ? c : b, ccw_ ? b : c};
+        out_.insert(out_.end(), t, t + 3);
+    }
+
+    // Rings that are both regular: n quads between two rows whose lengths differ by two.
+    void regular(Row const& O, Row const& I)
+    {
+        std::uint32_t const n = I.count;
+        std::uint32_t o = 0, i = 0;
+        auto const advance_outer = [&] {
+            add(O[o], O[o + 1], I[i]);
+            ++o;
+        };
+        advance_outer();
+        for (std::uint32_t k = 0; k < n / 2; ++k, ++o, ++i) {
+            add(O[o], I[i + 1], I[i]);
+            add(O[o], O[o + 1], I[i + 1]);
+        }
+        for (std::uint32_t k = n / 2; k + 1 < n; ++k, ++o, ++i) {
+            add(I[i], O[o], O[o + 1]);
+            add(I[i], O[o + 1], I[i + 1]);
+        }
+        advance_outer();
+    }
+
+    // The frame between an edge, with its own factor, and the first inner ring (rule R71).
+    void transition(Row const& O, Span const& outer, Row const& I, Span const& inner)
+    {
+        std::uint32_t const ho = outer.stitch_half(), hi = inner.stitch_half();
+        std::uint32_t o = 0, i = 0;
+        auto const advance_outer = [&] {
+            add(O[o], O[o + 1], I[i]);
+            ++o;
+        };
+        auto const advance_inner = [&] {
+            add(I[i], O[o], I[i + 1]);
+            ++i;
+        };
+        if (ho > 0) advance_outer();
+        for (std::uint32_t p = 1; p <= 32; ++p) {
+            if (kRank[p] < hi) advance_inner();
+            if (kRank[p] < ho) advance_outer();
+        }
+        if (inner.odd && outer.odd) {
+            add(I[i], O[o], I[i + 1]);
+            add(I[i + 1], O[o], O[o + 1]);
+            ++i, ++o;
+        } else if (outer.odd) {
+            add(I[i], O[o], O[o + 1]);
+            ++o;
+        } else if (inner.odd) {
+            advance_inner();
+        }
+        for (std::uint32_t p = 32; p >= 1; --p) {
+            if (kRank[p] < ho) advance_outer();
+            if (kRank[p] < hi) advance_inner();
+        }
+        if (ho > 0) advance_outer();
+    }
+
+private:
+    std::vector<std::uint32_t>& out_;
+    bool ccw_;
+};
+
+void add_point(TessellatedPatch& out, std::uint32_t u, std::uint32_t v)
+{
+    out.u.push_back(u);
+    out.v.push_back(v);
+}
+
+bool wants_triangles(TessellatorState const& s)
+{
+    return s.output == OutputPrimitive::TriangleCw || s.output == OutputPrimitive::TriangleCcw;
+}
+
+// The side `k` of a ring that starts at point `start`: the next side's first point is this one's last.
+Row ring_side(std::uint32_t start, std::array<std::uint32_t, 4> const& counts, int sides, int k)
+{
+    std::uint32_t first = start;
+    for (int s = 0; s < k; ++s) first += counts[std::size_t(s)] - 1;
+    std::uint32_t const count = counts[std::size_t(k)];
+    return {first, count, k + 1 == sides ? start : first + count - 1};
+}
+
+void tessellate_quad(TessellatorState const& state, FixedFactors const& f, TessellatedPatch& out)
+{
+    bool const ccw = state.output == OutputPrimitive::TriangleCcw;
+    Triangles triangles(out.indices, ccw);
+    bool const minimal =
+        state.partitioning != Partitioning::FractionalEven &&
+        std::all_of(f.value.begin(), f.value.end(), [](std::uint32_t x) { return x == kOne; });
+    if (minimal) {
+        add_point(out, 0, 0), add_point(out, kOne, 0), add_point(out, kOne, kOne);
+        add_point(out, 0, kOne);
+        if (wants_triangles(state)) triangles.add(0, 1, 3), triangles.add(1, 2, 3);
+        return;
+    }
+
+    std::array<Positions, 4> const edge{Positions(f.value[0], f.odd[0]), Positions(f.value[1], f.odd[1]),
+                                        Positions(f.value[2], f.odd[2]), Positions(f.value[3], f.odd[3])};
+    Positions const Pu(f.value[4], f.odd[4]), Pv(f.value[5], f.odd[5]);
+    std::uint32_t const Nu = Pu.span.points, Nv = Pv.span.points;
+
+    // Ring 0: the patch edges, walked (0,1) (0,0) (1,0) (1,1).
+    for (std::uint32_t j = edge[0].span.points - 1; j >= 1; --j) add_point(out, 0, edge[0][j]);
+    for (std::uint32_t j = 0; j + 1 < edge[1].span.points; ++j) add_point(out, edge[1][j], 0);
+    for (std::uint32_t j = 0; j + 1 < edge[2].span.points; ++j) add_point(out, kOne, edge[2][j]);
+    for (std::uint32_t j = edge[3].span.points - 1; j >= 1; --j) add_point(out, edge[3][j], kOne);
+
+    std::uint32_t const M = std::min(Nu, Nv) >> 1;
+    std::array<std::uint32_t, 34> ring_start{};
+    for (std::uint32_t k = 1; k < M; ++k) {
+        ring_start[k] = std::uint32_t(out.points());
+        std::uint32_t const eu = Nu - 1 - k, ev = Nv - 1 - k;
+        for (std::uint32_t j = ev; j > k; --j) add_point(out, Pu[k], Pv[j]);
+        for (std::uint32_t j = k; j < eu; ++j) add_point(out, Pu[j], Pv[k]);
+        for (std::uint32_t j = k; j < ev; ++j) add_point(out, Pu[eu], Pv[j]);
+        for (std::uint32_t j = eu; j > k; --j) add_point(out, Pu[j], Pv[ev]);
+    }
+
+    // The leftover row or column in the middle of an even span.
+    bool const row = Nu > Nv && !f.odd[5];
+    bool const column = !row && Nv >= Nu && !f.odd[4];
+    auto const leftover = std::uint32_t(out.points());
+    if (row)
+        for (std::uint32_t j = M; j <= Nu - 1 - M; ++j) add_point(out, Pu[j], kHalf);
+    if (column)
+        for (std::uint32_t j = Nv - M; j-- > M;) add_point(out, kHalf, Pv[j]);
+    if (!wants_triangles(state)) return;
+
+    std::array<std::uint32_t, 4> outer_counts;
+    for (std::size_t e = 0; e < 4; ++e) outer_counts[e] = edge[e].span.points;
+    std::uint32_t outer_start = 0;
+    std::uint32_t const K = std::min((Nu + 1) >> 1, (Nv + 1) >> 1);
+    for (std::uint32_t k = 1; k < K; ++k) {
+        std::array<std::uint32_t, 4> const counts{Nv - 2 * k, Nu - 2 * k, Nv - 2 * k, Nu - 2 * k};
+        bool const last = k == M; // the leftover row or column
+        for (int side = 0; side < 4; ++side) {
+            Row const O = ring_side(outer_start, outer_counts, 4, side);
+            Row I{};
+            if (!last) {
+                I = ring_side(ring_start[k], counts, 4, side);
+            } else {
+                std::uint32_t const n = row ? counts[1] : counts[0], end = leftover + n - 1;
+                int const along = row ? (side + 3) % 4 : side; // 0: as emitted, 1: end, 2: back, 3: start
+                switch (along) {
+                case 0: I = {leftover, n, end}; break;
+                case 1: I = {end, 1, end}; break;
+                case 2: I = {end, n, leftover, -1}; break;
+                default: I = {leftover, 1, leftover}; break;
+                }
+            }
+            Span const& inner = side % 2 == 0 ? Pv.span : Pu.span;
+            if (k == 1)
+                triangles.transition(O, edge[std::size_t(side)].span, I, inner);
+            else
+                triangles.regular(O, I);
+        }
+        outer_counts = counts;
+        outer_start = ring_start[k];
+    }
+
+    // The centre strip, when the shorter axis is odd: its last ring is two points wide.
+    std::uint32_t const L = M > 1 ? ring_start[M - 1] : 0;
+    if (Nu > Nv && f.odd[5]) {
+        std::uint32_t const Q = Nu - Nv + 1;
+        auto const A = [&](std::uint32_t j) { return L + 1 + j; };
+        auto const B = [&](std::uint32_t j) { return j == 0 ? L : L + 2 * Q + 2 - j; };
+        for (std::uint32_t j = 0; j < Q; ++j) {
+            triangles.add(B(j), A(j), A(j + 1));
+            triangles.add(B(j), A(j + 1), B(j + 1));
+        }
+    } else if (Nv >= Nu && f.odd[4]) {
+        std::uint32_t const Q = Nv - Nu + 1;
+        auto const A = [&](std::uint32_t j) { return L + j; };
+        auto const B = [&](std::uint32_t j) { return L + 2 * Q + 1 - j; };
+        for (std::uint32_t j = 0; j < Q; ++j) {
+            if (!f.odd[5]) {
+                triangles.add(B(j), A(j), A(j + 1));
+                triangles.add(B(j), A(j + 1), B(j + 1));
+            } else if (j != (Q - 1) / 2) {
+                triangles.add(A(j), A(j + 1), B(j));
+                triangles.add(B(j), A(j + 1), B(j + 1));
+            } else {
+                triangles.add(A(j), B(j + 1), B(j));
+                triangles.add(A(j), A(j + 1), B(j + 1));
+            }
+        }
+    }
+}
+
+void tessellate_tri(TessellatorState const& state, FixedFactors const& f, TessellatedPatch& out)
+{
+    Triangles triangles(out.indices, state.output == OutputPrimitive::TriangleCcw);
+    bool const minimal = state.partitioning != Partitioning::FractionalEven &&
+                         std::all_of(f.value.begin(), f.value.begin() + 4,
+                                     [](std::uint32_t x) { return x == kOne; });
+    if (minimal) {
+        add_point(out, 0, kOne), add_point(out, 0, 0), add_point(out, kOne, 0);
+        if (wants_triangles(state)) triangles.add(0, 1, 2);
+        return;
+    }
+
+    std::array<Positions, 3> const edge{Positions(f.value[0], f.odd[0]), Positions(f.value[1], f.odd[1]),
+                                        Positions(f.value[2], f.odd[2])};
+    Positions const P(f.value[3], f.odd[3]);
+    std::uint32_t const N = P.span.points;
+
+    for (std::uint32_t j = edge[0].span.points - 1; j >= 1; --j) add_point(out, 0, edge[0][j]);
+    for (std::uint32_t j = 0; j + 1 < edge[1].span.points; ++j) add_point(out, edge[1][j], 0);
+    for (std::uint32_t j = edge[2].span.points - 1; j >= 1; --j)
+        add_point(out, edge[2][j], kOne - edge[2][j]);
+
+    std::array<std::uint32_t, 34> ring_start{};
+    std::uint32_t const rings = N >> 1;
+    for (std::uint32_t k = 1; k < rings; ++k) {
+        ring_start[k] = std::uint32_t(out.points());
+        std::uint32_t const e = N - 1 - k;
+        std::uint32_t const c = (P[k] * 0xaaaau + 0x8000u) >> 16; // two thirds of P(k)
+        std::uint32_t const d = (c + 1) / 2;
+        for (std::uint32_t j = e; j > k; --j) add_point(out, c, P[j] - d);
+        for (std::uint32_t j = k; j < e; ++j) add_point(out, P[j] - d, c);
+        for (std::uint32_t j = e; j > k; --j) {
+            std::uint32_t const u = P[j] - d;
+            add_point(out, u, kOne - u - c);
+        }
+    }
+    if (!f.odd[3]) {
+        ring_start[rings] = std::uint32_t(out.points());
+        add_point(out, 0x5555, 0x5555);
+    }
+    if (!wants_triangles(state)) return;
+
+    std::array<std::uint32_t, 4> outer_counts{edge[0].span.points, edge[1].span.points,
+                                              edge[2].span.points, 0};
+    std::uint32_t outer_start = 0;
+    for (std::uint32_t k = 1; k < (N + 1) >> 1; ++k) {
+        std::uint32_t const n = N - 2 * k;
+        std::array<std::uint32_t, 4> const counts{n, n, n, 0};
+        for (int side = 0; side < 3; ++side) {
+            Row const O = ring_side(outer_start, outer_counts, 3, side);
+            Row const I = n == 1 ? Row{ring_start[k], 1, ring_start[k]}
+                                 : ring_side(ring_start[k], counts, 3, side);
+            if (k == 1)
+                triangles.transition(O, edge[std::size_t(side)].span, I, P.span);
+            else
+                triangles.regular(O, I);
+        }
+        outer_counts = counts;
+        outer_start = ring_start[k];
+    }
+    if (f.odd[3]) triangles.add(outer_start, outer_start + 1, outer_start + 2);
+}
+
+void tessellate_isoline(TessellatorState const& state, FixedFactors const& f, TessellatedPatch& out)
+{
+    Positions const lines(f.value[0], f.odd[0]), detail(f.value[1], f.odd[1]);
+    std::uint32_t const density = f.value[0] >> 16;
+    for (std::uint32_t l = 0; l < density; ++l) {
+        auto const start = std::uint32_t(out.points());
+        for (std::uint32_t j = 0; j < detail.span.points; ++j) add_point(out, detail[j], lines[l]);
+        if (state.output == OutputPrimitive::Point) continue;
+        for (std::uint32_t j = 0; j + 1 < detail.span.points; ++j) {
+            out.indices.push_back(start + j);
+            out.indices.push_back(start + j + 1);
+        }
+    }
+}
+
+float clamp_factor(float x, float lo, float hi) { return min(hi, max(lo, x)); }
+
+} // namespace
+
+std::string_view name_of(TessellatorDomain d)
+{
+    return d == TessellatorDomain::Quad ? "quad" : d == TessellatorDomain::Tri ? "tri" : "isoline";
+}
+
+std::string_view name_of(Partitioning p)
+{
+    switch (p) {
+    case Partitioning::Integer: return "integer";
+    case Partitioning::Pow2: return "pow2";
+    case Partitioning::FractionalOdd: return "fractional_odd";
+    default: return "fractional_even";
+    }
+}
+
+std::string_view name_of(OutputPrimitive p)
+{
+    switch (p) {
+    case OutputPrimitive::Point: return "point";
+    case OutputPrimitive::Line: return "line";
+    case OutputPrimitive::TriangleCw: return "triangle_cw";
+    default: return "triangle_ccw";
+    }
+}
+
+namespace {
+template <class E, std::size_t N>
+std::optional<E> from_name(std::string_view name, std::array<E, N> const& values)
+{
+    for (E e : values)
+        if (name_of(e) == name) return e;
+    return {};
+}
+} // namespace
+
+std::optional<TessellatorDomain> tessellator_domain_from_name(std::string_view name)
+{
+    using D = TessellatorDomain;
+    return from_name(name, std::array{D::Quad, D::Tri, D::Isoline});
+}
+
+std::optional<Partitioning> partitioning_from_name(std::string_view name)
+{
+    using P = Partitioning;
+    return from_name(name, std::array{P::Integer, P::Pow2, P::FractionalOdd, P::FractionalEven});
+}
+
+std::optional<OutputPrimitive> output_primitive_from_name(std::string_view name)
+{
+    using O = OutputPrimitive;
+    return from_name(name, std::array{O::Point, O::Line, O::TriangleCw, O::TriangleCcw});
+}
+
+int tess_factor_count(TessellatorDomain d)
+{
+    return d == TessellatorDomain::Quad ? 6 : d == TessellatorDomain::Tri ? 4 : 2;
+}
+
+int edge_factor_count(TessellatorDomain d)
+{
+    return d == TessellatorDomain::Quad ? 4 : d == TessellatorDomain::Tri ? 3 : 2;
+}
+
+FixedFactors process_tess_factors(TessellatorState const& state, TessFactors const& factors)
+{
+    DenormalMode const ieee(DenormalMode::Keep);
+    FixedFactors out;
+    auto const edges = std::size_t(edge_factor_count(state.domain));
+    auto const count = std::size_t(tess_factor_count(state.domain));
+    for (std::size_t i = 0; i < edges; ++i) {
+        if (factors[i] > 0) continue;
+        out.culled = true;
+        return out;
+    }
+
+    bool const whole =
+        state.partitioning == Partitioning::Integer || state.partitioning == Partitioning::Pow2;
+    bool const fractional_odd = state.partitioning == Partitioning::FractionalOdd;
+    float const lo = state.partitioning == Partitioning::FractionalEven ? 2.0f : 1.0f;
+    float const hi = fractional_odd ? 63.0f : 64.0f;
+    constexpr float kAboveOne = 1.0f + 1.0f / (1 << 17); // the largest value that still rounds to 1.0
+
+    TessFactors clamped{};
+    float inside_lo = lo;
+    for (std::size_t i = 0; i < edges; ++i) {
+        bool const density = state.domain == TessellatorDomain::Isoline && i == 0;
+        clamped[i] = density ? clamp_factor(factors[i], 1, 64) : clamp_factor(factors[i], lo, hi);
+        if (fractional_odd && clamped[i] > kAboveOne) inside_lo = 1.0f + 1.0f / (1 << 16);
+        if (whole || density) clamped[i] = std::ceil(clamped[i]);
+    }
+    if (fractional_odd && state.domain == TessellatorDomain::Quad)
+        for (std::size_t i = edges; i < count; ++i)
+            if (factors[i] > kAboveOne) inside_lo = 1.0f + 1.0f / (1 << 16);
+    for (std::size_t i = edges; i < count; ++i) {
+        clamped[i] = clamp_factor(factors[i], inside_lo, hi);
+        if (whole) clamped[i] = std::ceil(clamped[i]);
+    }
+
+    for (std::size_t i = 0; i < count; ++i) {
+        out.value[i] = std::uint32_t(std::nearbyint(double(clamped[i]) * kOne));
+        bool const inside = i >= edges;
+        if (whole || (state.domain == TessellatorDomain::Isoline && i == 0))
+            out.odd[i] = ((out.value[i] >> 16) & 1) && !(inside && out.value[i] == kOne);
+        else
+            out.odd[i] = fractional_odd;
+    }
+    return out;
+}
+
+void tessellate(TessellatorState const& state, FixedFactors const& factors, TessellatedPatch& out)
+{
+    out.u.clear(), out.v.clear(), out.indices.clear();
+    if (factors.culled) return;
+    switch (state.domain) {
+    case TessellatorDomain::Quad: tessellate_quad(state, factors, out); break;
+    case TessellatorDomain::Tri: tessellate_tri(state, factors, out); break;
+    case TessellatorDomain::Isoline: tessellate_isoline(state, factors, out); break;
+    }
+    auto const n = std::uint32_t(out.points());
+    if (state.output == OutputPrimitive::Point) {
+        for (std::uint32_t i = 0; i < n; ++i) out.indices.push_back(i);
+    } else if (state.output == OutputPrimitive::Line && state.domain != TessellatorDomain::Isoline) {
+        for (std::uint32_t i = 0; i + 1 < n; ++i) {
+            out.indices.push_back(i);
+            out.indices.push_back(i + 1);
+        }
+    }
+}
+
+std::vector<std::uint32_t> span_positions(std::uint32_t factor, bool odd)
+{
+    Span const span(factor, odd);
+    std::vector<std::uint32_t> p(span.points);
+    for (std::uint32_t i = 0; i < span.points; ++i) p[i] = span.position(i);
+    return p;
+}
+
+std::size_t TessellatorCache::Hash::operator()(FixedFactors const& f) const
+{
+    std::uint64_t h = 0xcbf29ce484222325u;
+    for (std::size_t i = 0; i < f.value.size(); ++i)
+        h = (h ^ (f.value[i] * 2 + (f.odd[i] ? 1 : 0))) * 0x100000001b3u;
+    return std::size_t(h);
+}
+
+std::shared_ptr<DomainPoints const> TessellatorCache::find(TessFactors const& factors)
+{
+    FixedFactors const key = process_tess_factors(state_, factors);
+    if (auto const it = entries_.find(key); it != entries_.end()) return it->second;
+
+    auto points = std::make_shared<DomainPoints>();
+    tessellate(state_, key, points->patch);
+    std::size_t const n = points->patch.points();
+    constexpr std::size_t kPadding = 16; // the widest group
+    points->u.resize(n ? n + kPadding : 0);
+    points->v.resize(points->u.size());
+    for (std::size_t i = 0; i < points->u.size(); ++i) {
+        std::size_t const k = std::min(i, n - 1);
+        points->u[i] = float(points->patch.u[k]) / float(kOne);
+        points->v[i] = float(points->patch.v[k]) / float(kOne);
+    }
+    if (entries_.size() >= capacity_) entries_.clear();
+    return entries_.emplace(key, std::move(points)).first->second;
+}
+
+} // namespace tessemu

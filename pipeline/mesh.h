@@ -1,0 +1,53 @@
+// Control mesh: positions, faces, and OpenSubdiv's tags.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/vec3.hpp>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tessemu {
+
+/// How the surface meets the mesh's boundary (OpenSubdiv's interpolateboundary).
+enum class BoundaryRule {
+    None = 0,          ///< faces at the boundary are not drawn
+    EdgeAndCorner = 1, ///< the boundary is a curve, a vertex with one face is interpolated (LOOP09 4.6)
+    EdgeOnly = 2,      ///< the boundary curve is smooth through such vertices too
+};
+
+struct ControlMesh {
+    struct Crease {
+        std::uint32_t a, b;
+        float sharpness; ///< 10 and above: infinitely sharp
+    };
+    struct Corner {
+        std::uint32_t vertex;
+        float sharpness;
+    };
+
+    std::string name; ///< file name without its folder, or the built-in's name
+    std::vector<glm::vec3> positions;
+    std::vector<std::uint32_t> face_start{0}; ///< faces + 1 offsets into face_vertices
+    std::vector<std::uint32_t> face_vertices; ///< counter-clockwise, from 0
+    std::vector<Crease> creases;
+    std::vector<Corner> corners;
+    std::vector<std::uint32_t> holes; ///< faces that shape the surface but are not drawn
+    BoundaryRule boundary = BoundaryRule::EdgeAndCorner;
+
+    std::size_t faces() const { return face_start.size() - 1; }
+    std::span<std::uint32_t const> face(std::size_t f) const
+    {
+        return std::span(face_vertices).subspan(face_start[f], face_start[f + 1] - face_start[f]);
+    }
+    void add_face(std::span<std::uint32_t const> vertices)
+    {
+        face_vertices.insert(face_vertices.end(), vertices.begin(), vertices.end());
+        face_start.push_back(std::uint32_t(face_vertices.size()));
+    }
+};
+
+} // namespace tessemu

@@ -1,0 +1,85 @@
+// Bezier curves and tensor-product patches.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "shaders_cpp/records.h"
+
+namespace tessemu {
+
+/// Cubic Bernstein polynomials and their derivatives at t.
+///
+/// \cost  basis 8 mul, 1 add; derivatives 4 mul, 2 add
+template <class T> struct CubicBasis {
+    T b[4], d[4];
+
+    constexpr explicit CubicBasis(T t)
+    {
+        T const s = T(1) - t;
+        T const ss = s * s, tt = t * t;
+        T const sst = ss * t, tts = tt * s;
+        b[0] = ss * s;
+        b[1] = T(3) * sst;
+        b[2] = T(3) * tts;
+        b[3] = tt * t;
+        T const ss3 = T(3) * ss, tt3 = T(3) * tt;
+        T const st = s * t;
+        T const st6 = T(6) * st;
+        d[0] = -ss3;
+        d[1] = ss3 - st6;
+        d[2] = st6 - tt3;
+        d[3] = tt3;
+    }
+};
+
+/// Bicubic Bezier patch: S = B3(u) b B3(v).
+///
+/// \param net   net(i, j): control point i along u, j along v; asked for once each
+/// \returns     position and the derivatives along u and v
+/// \cost        156 mul (LOOP10's 162 with the cross product)
+template <class T, class Net> constexpr TangentFrame<T> bicubic(Net const& net, T u, T v)
+{
+    CubicBasis<T> const U(u), V(v);
+    TangentFrame<T> s{};
+    for (int i = 0; i < 4; ++i) {
+        float3<T> const b0 = net(i, 0), b1 = net(i, 1), b2 = net(i, 2), b3 = net(i, 3);
+        float3<T> const row = V.b[0] * b0 + V.b[1] * b1 + V.b[2] * b2 + V.b[3] * b3;
+        float3<T> const row_dv = V.d[0] * b0 + V.d[1] * b1 + V.d[2] * b2 + V.d[3] * b3;
+        if (i == 0) {
+            s.position = U.b[0] * row;
+            s.du = U.d[0] * row;
+            s.dv = U.b[0] * row_dv;
+        } else {
+            s.position = s.position + U.b[i] * row;
+            s.du = s.du + U.d[i] * row;
+            s.dv = s.dv + U.b[i] * row_dv;
+        }
+    }
+    return s;
+}
+
+/// Quartic Bezier triangle by de Casteljau's algorithm.
+///
+/// \param b        15 points: b[row][k], row = 4 - (first index), k = (third index), so
+///                 b[0] = {b400}, b[1] = {b310, b301}, b[2] = {b220, b211, b202}, ...
+/// \param u, v, w  barycentric, w = 1-u-v, weights of corners b400, b040, b004
+/// \returns        position, and a quarter of the derivatives along (1,0,-1) and (0,1,-1)
+/// \cost           180 mul
+template <class T>
+constexpr TangentFrame<T> quartic_triangle(float3<T> const (&b)[5][5], T u, T v, T w)
+{
+    float3<T> q[5][5];
+    for (int r = 0; r < 5; ++r)
+        for (int k = 0; k <= r; ++k) q[r][k] = b[r][k];
+    for (int degree = 4; degree > 1; --degree)
+        for (int r = 0; r < degree; ++r)
+            for (int k = 0; k <= r; ++k)
+                q[r][k] = u * q[r][k] + v * q[r + 1][k] + w * q[r + 1][k + 1];
+    TangentFrame<T> s{};
+    s.position = u * q[0][0] + v * q[1][0] + w * q[1][1];
+    s.du = q[0][0] - q[1][1];
+    s.dv = q[1][0] - q[1][1];
+    return s;
+}
+
+} // namespace tessemu
