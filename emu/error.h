@@ -27,11 +27,17 @@ struct LimitError : Error {
 /// A file cannot be read or holds something that is not valid.
 struct FormatError : Error {
     FormatError(std::string const& file_, int line_, std::string const& what)
-        : Error(file_ + (line_ > 0 ? ":" + std::to_string(line_) : "") + ": " + what), file(file_),
-          line(line_)
+        : Error(message(file_, line_, what)), file(file_), line(line_)
     {}
     std::string file;
     int line; ///< counted from 1; 0: the whole file
+
+private:
+    static std::string message(std::string text, int line, std::string const& what)
+    {
+        if (line > 0) text.append(":").append(std::to_string(line));
+        return text.append(": ").append(what);
+    }
 };
 
 } // namespace tessemu

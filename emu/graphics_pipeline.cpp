@@ -471,7 +471,7 @@ DrawStatistics draw(GraphicsPipeline const& pipeline, DrawCall const& call,
     GraphicsPipelineDesc const& d = pipeline.desc();
     require(call.vertex_floats == d.vertex_shader->input_floats(),
             "the vertex buffer's record is not the vertex shader's input");
-    bool const patches = call.topology == Topology::PatchList;
+    bool const patches = call.topology == PrimitiveTopology::PatchList;
     require(patches == (d.hull_shader != nullptr),
             "patch lists need a hull shader and triangle lists must not have one (R3, R4)");
     if (patches && call.control_points != d.input_control_points)

@@ -43,7 +43,7 @@ AssembledPrimitives assemble_primitives(DrawCall const& call)
 {
     AssembledPrimitives out;
     out.vertices_per_primitive =
-        call.topology == Topology::TriangleList ? 3u : std::uint32_t(call.control_points);
+        call.topology == PrimitiveTopology::TriangleList ? 3u : std::uint32_t(call.control_points);
     if (auto const* i16 = std::get_if<std::span<std::uint16_t const>>(&call.indices)) {
         assemble_indexed(*i16, call, out);
     } else if (auto const* i32 = std::get_if<std::span<std::uint32_t const>>(&call.indices)) {

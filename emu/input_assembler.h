@@ -10,7 +10,7 @@
 
 namespace tessemu {
 
-enum class Topology { TriangleList, PatchList };
+enum class PrimitiveTopology { TriangleList, PatchList };
 
 /// Indices of a draw: none (vertices 0, 1, 2, ...), 16 or 32 bits. The all-ones index cuts (R31).
 using IndexBuffer =
@@ -18,7 +18,7 @@ using IndexBuffer =
 
 /// One draw. Attributes of a vertex lie one after the other, `vertex_floats` of them.
 struct DrawCall {
-    Topology topology = Topology::PatchList;
+    PrimitiveTopology topology = PrimitiveTopology::PatchList;
     int control_points = 4; ///< of a patch, 1 to 32
     std::span<float const> vertices;
     int vertex_floats = 3;

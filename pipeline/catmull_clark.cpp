@@ -67,18 +67,11 @@ ControlMesh catmull_clark_step(Topology const& topology)
         for (HalfEdge h = mesh.face_start[f]; h < mesh.face_start[f + 1]; ++h) out.holes.push_back(h);
     for (auto const& c : mesh.corners) out.corners.push_back(c);
     for (auto const& c : mesh.creases) {
-        if (c.sharpness <= 1) continue;
+        HalfEdge const h = topology.find_edge(c.a, c.b);
+        if (c.sharpness <= 1 || h == Topology::kNone) continue;
         float const left = c.sharpness >= 10 ? c.sharpness : c.sharpness - 1;
-        for (HalfEdge h : topology.ring(c.a))
-            for (HalfEdge e : {h, topology.previous(h)}) {
-                std::uint32_t const p = topology.vertex_of(e), q = topology.vertex_of(topology.next(e));
-                if ((p == c.a && q == c.b) || (p == c.b && q == c.a)) {
-                    out.creases.push_back({c.a, edge_point[e], left});
-                    out.creases.push_back({edge_point[e], c.b, left});
-                    goto found;
-                }
-            }
-    found:;
+        out.creases.push_back({c.a, edge_point[h], left});
+        out.creases.push_back({edge_point[h], c.b, left});
     }
     return out;
 }

@@ -52,9 +52,8 @@ void find_neighbourhood(Topology const& topology, std::uint32_t face, Neighbourh
     out.inputs.clear();
     out.key.clear();
     auto const local = [&](std::uint32_t v) {
-        auto const it = std::find(out.inputs.begin(), out.inputs.end(), v);
-        if (it == out.inputs.end()) out.inputs.push_back(v);
-        auto const i = int(it - out.inputs.begin());
+        auto const i = int(std::find(out.inputs.begin(), out.inputs.end(), v) - out.inputs.begin());
+        if (i == int(out.inputs.size())) out.inputs.push_back(v);
         out.key.push_back(char(i));
         out.key.push_back(char(i >> 8));
         return i;

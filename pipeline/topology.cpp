@@ -120,6 +120,15 @@ HalfEdge Topology::twin(HalfEdge h) const
     return previous(faces[j == 0 ? faces.size() - 1 : j - 1]);
 }
 
+HalfEdge Topology::find_edge(std::uint32_t a, std::uint32_t b) const
+{
+    for (HalfEdge h : ring(a)) {
+        if (vertex_of(next(h)) == b) return h;
+        if (vertex_of(previous(h)) == b) return previous(h);
+    }
+    return kNone;
+}
+
 std::vector<std::uint32_t> Topology::two_ring(std::uint32_t face) const
 {
     std::vector<std::uint32_t> out;

@@ -91,15 +91,15 @@ struct PatchPixelShader {
     }
 };
 
-/// Depth as grey: near is bright. `near_z` and `far_z` are depths that map to white and black.
+/// Distance along the view as grey: `near_w` is white, `far_w` black.
 struct DepthPixelShader {
     template <class T> using Input = SurfaceAttributes<T>;
-    float near_z = 0, far_z = 1;
+    float near_w = 0, far_w = 1;
     template <class T>
     float4<T> operator()(PixelInput<T> const& pixel, SurfaceAttributes<T> const&) const
     {
-        T const scale(1.0f / (far_z - near_z));
-        T const d = saturate(T((T(far_z) - pixel.position.z) * scale));
+        T const scale(1.0f / (far_w - near_w));
+        T const d = saturate(T((T(far_w) - pixel.position.w) * scale));
         return {d, d, d, T(1)};
     }
 };

@@ -1,0 +1,519 @@
+// tessemu: the program. Parses, calls the library, prints.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "io/atomic_file.h"
+#include "io/image_writer.h"
+#include "io/mesh_writer.h"
+#include "io/model.h"
+#include "io/report.h"
+#include "pipeline/builtin_models.h"
+#include "pipeline/frame.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include <unistd.h>
+
+using namespace tessemu;
+
+namespace {
+
+// Options as the user wrote them.
+struct Options {
+    std::string model, output, json;
+    std::string scheme = "gregory-stencil", partitioning = "fractional_odd", size = "1024x1024";
+    std::string camera = "auto", view = "lit", normals = "frozen", contraction = "none", cull = "none";
+    std::string vertex_cache = "fifo:16";
+    std::string domain = "quad", primitive = "triangle_cw", batch;
+    std::vector<double> factors;
+    std::vector<std::string> set;
+    double tess = 8;
+    int lanes = kNativeLanes, threads = 0;
+    bool weld = false;
+};
+
+class Stopwatch {
+public:
+    double seconds() const
+    {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// On a terminal, and only once the work has lasted a second.
+class ProgressBar {
+public:
+    ~ProgressBar() { clear(); }
+    void clear()
+    {
+        if (shown_) std::fputs("\r\033[K", stderr);
+        shown_ = false;
+    }
+    void operator()(std::size_t done, std::size_t all)
+    {
+        if (!isatty(STDERR_FILENO) || clock_.seconds() < 1 || all == 0) return;
+        int const width = 40, filled = int(std::uint64_t(width) * done / all);
+        fmt::print(stderr, "\r[{}{}] {:3d} %", std::string(std::size_t(filled), '#'),
+                   std::string(std::size_t(width - filled), '.'), int(100 * std::uint64_t(done) / all));
+        std::fflush(stderr);
+        shown_ = true;
+    }
+
+private:
+    Stopwatch clock_;
+    bool shown_ = false;
+};
+
+double number(std::string const& text, std::string const& option)
+{
+    std::size_t end = 0;
+    double x = NAN;
+    try {
+        x = std::stod(text, &end);
+    } catch (std::exception const&) {
+        end = 0;
+    }
+    if (end == 0 || end != text.size() || !std::isfinite(x))
+        throw Error(option + ": '" + text + "' is not a number");
+    return x;
+}
+
+std::vector<std::string> split(std::string const& text, char separator)
+{
+    std::vector<std::string> parts(1);
+    for (char c : text) {
+        if (c == separator)
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    }
+    return parts;
+}
+
+std::pair<int, int> parse_size(std::string const& text)
+{
+    auto const parts = split(text, 'x');
+    if (parts.size() != 2) throw Error("--size is '" + text + "', it must be WIDTHxHEIGHT");
+    int out[2];
+    for (std::size_t i = 0; i < 2; ++i) {
+        double const x = number(parts[i], "--size");
+        if (x != std::floor(x) || x < 1 || x > RenderTarget::kMaxSize)
+            throw Error(fmt::format("--size: {} is not a whole number from 1 to {}", parts[i], RenderTarget::kMaxSize));
+        out[i] = int(x);
+    }
+    return {out[0], out[1]};
+}
+
+glm::vec3 parse_vector(std::string const& text)
+{
+    auto const parts = split(text, ',');
+    if (parts.size() != 3) throw Error("--camera: '" + text + "' is not X,Y,Z");
+    return {float(number(parts[0], "--camera")), float(number(parts[1], "--camera")),
+            float(number(parts[2], "--camera"))};
+}
+
+// auto, from=X,Y,Z, or eye=X,Y,Z with target=, up=, focal=, joined by colons.
+Camera parse_camera(std::string const& text, ControlMesh const& mesh, float width_over_height)
+{
+    glm::vec3 from(0.55f, 0.42f, 1.0f);
+    std::optional<glm::vec3> eye, target, up;
+    std::optional<float> focal;
+    if (text != "auto") {
+        for (std::string const& part : split(text, ':')) {
+            std::size_t const equals = part.find('=');
+            std::string const key = part.substr(0, equals);
+            std::string const value = equals == std::string::npos ? "" : part.substr(equals + 1);
+            if (key == "from")
+                from = parse_vector(value);
+            else if (key == "eye")
+                eye = parse_vector(value);
+            else if (key == "target")
+                target = parse_vector(value);
+            else if (key == "up")
+                up = parse_vector(value);
+            else if (key == "focal")
+                focal = float(number(value, "--camera focal"));
+            else
+                throw Error("--camera: '" + part + "' is not auto, from=, eye=, target=, up= or focal=");
+        }
+    }
+    if (from.x == 0 && from.y == 0 && from.z == 0) throw Error("--camera: from=0,0,0 is no direction");
+    Camera camera = frame_points(mesh.positions, from, width_over_height);
+    if (target) camera.target = *target;
+    if (eye) camera.eye = *eye;
+    if (up) camera.up = *up;
+    if (focal) camera.focal = *focal;
+    if (!(camera.focal > 0)) throw Error("--camera: focal must be above 0");
+    if (camera.eye == camera.target) throw Error("--camera: eye and target are the same point");
+    if (eye || target) fit_depth_range(camera, mesh.positions);
+    return camera;
+}
+
+Machine parse_machine(Options const& o)
+{
+    Machine m;
+    m.lanes = o.lanes;
+    if (o.contraction == "all") {
+        m.contraction = Contraction::All;
+    } else if (o.contraction.starts_with("mixed:")) {
+        double const seed = number(o.contraction.substr(6), "--contraction mixed");
+        if (seed < 0 || seed != std::floor(seed) || seed > 9e15)
+            throw Error("--contraction: the seed must be a whole number, 0 or above");
+        m.contraction = Contraction::Mixed;
+        m.seed = std::uint64_t(seed);
+    } else if (o.contraction != "none") {
+        throw Error("--contraction is '" + o.contraction + "', it must be none, all or mixed:SEED");
+    }
+    return m;
+}
+
+std::map<std::string, double> parse_parameters(Options const& o)
+{
+    std::map<std::string, double> out;
+    for (std::string const& s : o.set) {
+        std::size_t const equals = s.find('=');
+        if (equals == std::string::npos) throw Error("--set is '" + s + "', it must be NAME=VALUE");
+        out[s.substr(0, equals)] = number(s.substr(equals + 1), "--set " + s.substr(0, equals));
+    }
+    return out;
+}
+
+void print_warnings(std::vector<std::string> const& warnings)
+{
+    for (std::string const& w : warnings) fmt::print(stderr, "warning: {}\n", w);
+}
+
+void write_result(std::string const& path, std::string const& json)
+{
+    if (path == "-")
+        fmt::print("{}", json);
+    else if (!path.empty())
+        write_file(path, json);
+}
+
+// A model under a scheme, and the settings that draw and export share.
+struct Job {
+    PreparedMesh prepared;
+    std::unique_ptr<PatchMesh> patches;
+    FrameSettings frame;
+    ReportHeader header;
+    double load_seconds = 0, build_seconds = 0;
+};
+
+Job prepare(Options const& o, std::string const& verb)
+{
+    Job job;
+    FrameSettings& f = job.frame;
+    auto const partitioning = partitioning_from_name(o.partitioning);
+    if (!partitioning)
+        throw Error("--partitioning is '" + o.partitioning +
+                    "', it must be integer, pow2, fractional_odd or fractional_even");
+    if (!(o.tess > 0 && o.tess <= kMaxTessFactor))
+        throw Error(fmt::format("--tess is {}, it must be above 0 and at most {}", o.tess, kMaxTessFactor));
+    if (o.normals != "frozen" && o.normals != "true")
+        throw Error("--normals is '" + o.normals + "', it must be frozen or true");
+    f.partitioning = *partitioning;
+    f.tess_factor = float(o.tess);
+    f.true_normals = o.normals == "true";
+    f.machine = parse_machine(o);
+    f.vertex_cache = vertex_cache_from_name(o.vertex_cache);
+    Technique const& technique = find_technique(o.scheme);
+    auto const parameters = parse_parameters(o);
+
+    Stopwatch const load_clock;
+    Model model = load_model(o.model);
+    job.load_seconds = load_clock.seconds();
+    Stopwatch const build_clock;
+    job.prepared = prepare_mesh(std::move(model.mesh), technique);
+    job.patches = technique.build(*job.prepared.topology, parameters);
+    job.build_seconds = build_clock.seconds();
+
+    ReportHeader& h = job.header;
+    h.verb = verb;
+    h.inputs = {{model.name, model.sha256}};
+    h.warnings = std::move(model.warnings);
+    for (std::vector<std::string> const* more : {&std::as_const(job.prepared.warnings), &job.patches->warnings()})
+        h.warnings.insert(h.warnings.end(), more->begin(), more->end());
+    print_warnings(h.warnings);
+    // Warnings of the file carry its path; a result must not.
+    std::string const prefix = o.model.substr(0, o.model.size() - model.name.size());
+    for (std::string& w : h.warnings)
+        if (!prefix.empty() && w.starts_with(prefix)) w.erase(0, prefix.size());
+    h.config = {{"scheme", o.scheme}};
+    for (SchemeParameter const& p : technique.info().parameters) {
+        auto const it = parameters.find(p.name);
+        h.config.emplace_back(p.name, it == parameters.end() ? p.default_value : it->second);
+    }
+    h.config.emplace_back("tess", o.tess);
+    h.config.emplace_back("partitioning", o.partitioning);
+    h.config.emplace_back("normals", o.normals);
+    h.config.emplace_back("contraction", o.contraction);
+    h.config.emplace_back("vertex_cache", name_of(f.vertex_cache));
+    return job;
+}
+
+void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double seconds)
+{
+    h.run = {{"threads", std::int64_t(threads.threads())},
+             {"lanes", std::int64_t(job.frame.machine.lanes)},
+             {"load_seconds", job.load_seconds},
+             {"build_seconds", job.build_seconds},
+             {"draw_seconds", seconds}};
+}
+
+std::vector<double> as_doubles(glm::vec3 v) { return {v.x, v.y, v.z}; }
+
+int run_draw(Options const& o)
+{
+    if (!o.output.empty()) check_image_path(o.output);
+    auto const view = view_from_name(o.view);
+    if (!view) throw Error("--view is '" + o.view + "', it must be lit, normals, patches or depth");
+    auto const [width, height] = parse_size(o.size);
+    Job job = prepare(o, "draw");
+    FrameSettings& f = job.frame;
+    f.width = width;
+    f.height = height;
+    f.view = *view;
+    f.camera = parse_camera(o.camera, *job.prepared.mesh, float(width) / float(height));
+    if (o.cull == "back" || o.cull == "front")
+        f.cull = o.cull == "back" ? CullMode::Back : CullMode::Front;
+    else if (o.cull != "none")
+        throw Error("--cull is '" + o.cull + "', it must be none, back or front");
+
+    Config& c = job.header.config;
+    c.emplace_back("width", std::int64_t(width));
+    c.emplace_back("height", std::int64_t(height));
+    c.emplace_back("view", o.view);
+    c.emplace_back("cull", o.cull);
+    c.emplace_back("samples", std::int64_t(1));
+    c.emplace_back("camera_eye", as_doubles(f.camera.eye));
+    c.emplace_back("camera_target", as_doubles(f.camera.target));
+    c.emplace_back("camera_up", as_doubles(f.camera.up));
+    c.emplace_back("camera_focal", double(f.camera.focal));
+
+    ThreadPool const threads(o.threads);
+    ProgressBar bar;
+    Stopwatch const clock;
+    Frame const frame = draw_frame(*job.patches, f, threads, [&](std::size_t n, std::size_t all) { bar(n, all); });
+    bar.clear();
+    add_run(job.header, job, threads, clock.seconds());
+    if (!o.output.empty()) write_image(frame.target, o.output);
+    if (!o.json.empty()) write_result(o.json, draw_report(job.header, frame.statistics, frame.target));
+    if (o.json != "-") fmt::print("{}", counters_table(frame.statistics));
+    return 0;
+}
+
+int run_export(Options const& o)
+{
+    Job job = prepare(o, "export");
+    job.header.config.emplace_back("weld", o.weld);
+    MeshWriter writer(o.output, o.weld);
+    ThreadPool const threads(o.threads);
+    ProgressBar bar;
+    Stopwatch const clock;
+    std::size_t all = 0, done = 0;
+    for (PatchCount const& c : job.patches->patch_counts()) all += c.patches;
+    DrawStatistics const statistics =
+        visit_surface(*job.patches, job.frame, threads, [&](DrawPass const& pass, ShadedPatch const& patch) {
+            writer.add(pass, patch);
+            if (++done % 64 == 0) bar(done, all);
+        });
+    bar.clear();
+    writer.finish();
+    add_run(job.header, job, threads, clock.seconds());
+    if (!o.json.empty()) write_result(o.json, export_report(job.header, statistics, writer));
+    if (o.json != "-")
+        fmt::print("{}: {} vertices, {} triangles\n", o.output, writer.vertices(), writer.triangles());
+    return 0;
+}
+
+int run_info(Options const& o)
+{
+    Model const model = load_model(o.model);
+    print_warnings(model.warnings);
+    Topology const topology(model.mesh);
+    MeshSummary const summary = summarize(topology);
+    Technique const& technique = find_technique(o.scheme);
+    ReportHeader header{"info", {{"scheme", o.scheme}}, {{model.name, model.sha256}}, model.warnings, {}};
+    std::vector<PatchCount> patches;
+    // A mesh that the scheme refuses still has figures: the refusal becomes a warning.
+    try {
+        PreparedMesh const prepared = prepare_mesh(model.mesh, technique);
+        auto const mesh = technique.build(*prepared.topology, {});
+        patches = mesh->patch_counts();
+        for (auto const* more : {&prepared.warnings, &mesh->warnings()}) {
+            print_warnings(*more);
+            header.warnings.insert(header.warnings.end(), more->begin(), more->end());
+        }
+    } catch (LimitError const& e) {
+        header.warnings.push_back(o.scheme + " cannot draw this mesh: " + e.what());
+        print_warnings({header.warnings.back()});
+    }
+    if (!o.json.empty()) write_result(o.json, info_report(header, summary, patches));
+    if (o.json != "-") fmt::print("{}", info_table(summary, patches));
+    return 0;
+}
+
+int run_tessellate(Options const& o)
+{
+    if (!o.batch.empty()) {
+        std::string const text = o.batch == "-" ? read_file("/dev/stdin") : read_file(o.batch);
+        std::string out;
+        int line = 0;
+        std::istringstream in(text);
+        for (std::string row; std::getline(in, row);) {
+            ++line;
+            out += tessellator_answer(run_tessellator_case(parse_tessellator_case(row, o.batch, line))) + "\n";
+        }
+        if (o.output.empty())
+            fmt::print("{}", out);
+        else
+            write_file(o.output, out);
+        return 0;
+    }
+    TessellatorCase c;
+    std::string row = o.domain + " " + o.partitioning + " " + o.primitive;
+    for (double f : o.factors) row += fmt::format(" {:08x}", std::bit_cast<std::uint32_t>(float(f)));
+    c = parse_tessellator_case(row, "tessellate", 0);
+    ReportHeader header{"tessellate", {{"domain", o.domain}, {"partitioning", o.partitioning},
+                                       {"output", o.primitive}, {"factors", o.factors}}, {}, {}, {}};
+    std::string const json = tessellate_report(header, c, run_tessellator_case(c));
+    write_result(o.output.empty() ? "-" : o.output, json);
+    return 0;
+}
+
+int run_schemes()
+{
+    for (auto const& t : techniques()) {
+        SchemeInfo const i = t->info();
+        fmt::print("{:<18} {} section {}: {}\n", i.name, i.paper, i.section, i.summary);
+        for (SchemeParameter const& p : i.parameters)
+            fmt::print("    --set {}={:<8} {}\n", p.name, p.default_value, p.meaning);
+    }
+    return 0;
+}
+
+int run_models()
+{
+    for (BuiltinModel const& m : builtin_models()) {
+        std::string_view about = m.obj.substr(0, m.obj.find('\n'));
+        about.remove_prefix(std::min<std::size_t>(2, about.size()));
+        fmt::print("{:<14} {}\n", m.name, about);
+    }
+    return 0;
+}
+
+void add_surface_options(CLI::App& verb, Options& o)
+{
+    verb.add_option("--scheme", o.scheme, "patch scheme, see 'tessemu schemes'")->capture_default_str();
+    verb.add_option("--set", o.set, "NAME=VALUE: a parameter of the scheme");
+    verb.add_option("--tess", o.tess, "tess factor of every edge and inside, above 0 to 64")->capture_default_str();
+    verb.add_option("--partitioning", o.partitioning, "integer, pow2, fractional_odd, fractional_even")
+        ->capture_default_str();
+    verb.add_option("--normals", o.normals, "inside a patch: frozen (LOOP09 4.4) or true")->capture_default_str();
+    verb.add_option("--contraction", o.contraction, "products that feed sums: none, all, mixed:SEED")
+        ->capture_default_str();
+    verb.add_option("--vertex-cache", o.vertex_cache, "none, fifo:N, lru:N, infinite")->capture_default_str();
+    verb.add_option("--lanes", o.lanes, "4, 8 or 16; changes no result")->capture_default_str();
+    verb.add_option("-j", o.threads, "threads; 0: all cores")->check(CLI::Range(0, 1024))->capture_default_str();
+    verb.add_option("--json", o.json, "write the result as JSON; '-' is standard output");
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    Options o;
+    CLI::App app("The Direct3D 11 tessellation pipeline, emulated and counted.\n", "tessemu");
+    std::string const version = "tessemu " + std::string(tessemu_version());
+    app.set_version_flag("--version", version);
+    app.require_subcommand(1);
+    int (*run)(Options const&) = nullptr;
+    auto const verb = [&](char const* name, char const* about, char const* examples, int (*work)(Options const&)) {
+        CLI::App* v = app.add_subcommand(name, about);
+        v->set_version_flag("--version", version);
+        v->footer(std::string("Examples:\n") + examples);
+        v->callback([&run, work] { run = work; });
+        return v;
+    };
+
+    CLI::App* draw = verb("draw", "draw a control mesh and count what every stage does",
+                          "  tessemu draw jug -o jug.png\n"
+                          "  tessemu draw cage.obj --tess 16 --view patches -o patches.png --json counters.json\n"
+                          "  tessemu draw cage.obj --camera from=1,0.5,0 --size 1920x1080 -o side.exr",
+                          run_draw);
+    draw->add_option("MODEL", o.model, "OBJ file or built-in cage, see 'tessemu models'")->required();
+    draw->add_option("-o", o.output, "picture, .png or .exr");
+    draw->add_option("--size", o.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+    draw->add_option("--camera", o.camera, "auto, from=X,Y,Z, or eye=X,Y,Z:target=X,Y,Z:up=X,Y,Z:focal=F")
+        ->capture_default_str();
+    draw->add_option("--view", o.view, "lit, normals, patches, depth")->capture_default_str();
+    draw->add_option("--cull", o.cull, "none, back, front")->capture_default_str();
+    add_surface_options(*draw, o);
+
+    CLI::App* exporter = verb("export", "write the tessellated mesh, patch by patch",
+                              "  tessemu export jug --tess 8 -o jug.ply\n"
+                              "  tessemu export cage.obj --tess 4 --weld -o cage4.obj",
+                              run_export);
+    exporter->add_option("MODEL", o.model, "OBJ file or built-in cage")->required();
+    exporter->add_option("-o", o.output, "mesh, .obj or .ply")->required();
+    exporter->add_flag("--weld", o.weld, "join vertices with equal bits");
+    add_surface_options(*exporter, o);
+
+    CLI::App* tess = verb("tessellate", "run the fixed-function tessellator alone",
+                          "  tessemu tessellate --factors 3 3 3 3 3 3\n"
+                          "  tessemu tessellate --domain tri --partitioning integer --factors 2 2 2 4\n"
+                          "  tessemu tessellate --batch cases.txt > answers.txt",
+                          run_tessellate);
+    tess->add_option("--domain", o.domain, "quad, tri, isoline")->capture_default_str();
+    tess->add_option("--partitioning", o.partitioning, "integer, pow2, fractional_odd, fractional_even")
+        ->capture_default_str();
+    tess->add_option("--output", o.primitive, "point, line, triangle_cw, triangle_ccw")->capture_default_str();
+    CLI::Option* factors = tess->add_option("--factors", o.factors,
+                                            "quad: edges u=0 v=0 u=1 v=1, inside u v; tri: u=0 v=0 w=0, inside; "
+                                            "isoline: density, detail");
+    CLI::Option* batch = tess->add_option("--batch", o.batch, "file of cases, one a line; '-' is standard input");
+    factors->excludes(batch);
+    tess->add_option("-o,--json", o.output, "file for the result instead of standard output");
+
+    CLI::App* info = verb("info", "figures of a control mesh and of its patches",
+                          "  tessemu info jug\n  tessemu info cage.obj --json info.json", run_info);
+    info->add_option("MODEL", o.model, "OBJ file or built-in cage")->required();
+    info->add_option("--scheme", o.scheme, "patch scheme")->capture_default_str();
+    info->add_option("--json", o.json, "write the result as JSON; '-' is standard output");
+
+    verb("schemes", "list the patch schemes", "  tessemu schemes", [](Options const&) { return run_schemes(); });
+    verb("models", "list the built-in control meshes", "  tessemu models", [](Options const&) { return run_models(); });
+
+    // A verb that needs an argument, given none, shows its help.
+    if (argc == 1) {
+        fmt::print(stderr, "{}", app.help());
+        return 2;
+    }
+    if (argc == 2)
+        for (CLI::App* v : {draw, exporter, tess, info})
+            if (v->get_name() == argv[1]) {
+                fmt::print(stderr, "{}", v->help());
+                return 2;
+            }
+    try {
+        app.parse(argc, argv);
+    } catch (CLI::ParseError const& e) {
+        if (e.get_exit_code() == 0) return app.exit(e);
+        fmt::print(stderr, "tessemu: {}\n", e.what());
+        return 2;
+    }
+    try {
+        return run(o);
+    } catch (std::exception const& e) {
+        fmt::print(stderr, "tessemu: {}\n", e.what());
+        return 2;
+    }
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/model.h"
+
+#include "emu/error.h"
+#include "io/atomic_file.h"
+#include "io/sha256.h"
+#include "pipeline/builtin_models.h"
+
+namespace tessemu {
+
+Model load_model(std::string const& path_or_name)
+{
+    std::string text;
+    bool found = std::filesystem::exists(path_or_name);
+    if (found) {
+        text = read_file(path_or_name);
+    } else {
+        std::string known;
+        for (BuiltinModel const& m : builtin_models()) {
+            if (m.name == path_or_name) text = m.obj, found = true;
+            known += (known.empty() ? "" : ", ") + std::string(m.name);
+        }
+        if (!found)
+            throw FormatError(path_or_name, 0, "no such file, and no built-in cage (" + known + ")");
+    }
+    ObjFile obj = read_obj(text, path_or_name);
+    Model out;
+    out.name = std::filesystem::path(path_or_name).filename().string();
+    out.mesh = std::move(obj.mesh);
+    out.mesh.name = out.name;
+    out.warnings = std::move(obj.warnings);
+    Sha256 hash;
+    hash.add(text.data(), text.size());
+    out.sha256 = hash.hex();
+    return out;
+}
+
+} // namespace tessemu

@@ -1,0 +1,30 @@
+// OBJ files with OpenSubdiv's tags.
+//
+// tinyobjloader parses the numbers; what it lets pass in silence (missing or odd coordinates, bad
+// indices, cut lines, unknown tags) is found by a scan of the lines, which also knows their numbers.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pipeline/mesh.h"
+
+#include <filesystem>
+#include <string_view>
+
+namespace tessemu {
+
+struct ObjFile {
+    ControlMesh mesh;
+    std::vector<std::string> warnings; ///< with file name and line
+};
+
+/// Reads v, f and t statements; everything else is skipped (unknown tags with a warning). Vertices
+/// that no face uses stay. Accepts Windows line ends, a byte order mark and line continuations.
+///
+/// \param name  for messages and as the mesh's name
+/// Throws FormatError with file and line for: a coordinate that is missing, not a number or not
+/// finite; an index of 0 or out of range; a face with fewer than 3 or repeated vertices; no face at all.
+ObjFile read_obj(std::string_view text, std::string const& name);
+ObjFile read_obj_file(std::filesystem::path const& path);
+
+} // namespace tessemu

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/report.h"
+
+#include "io/sha256.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tessemu {
+
+using Json = nlohmann::ordered_json;
+
+std::string_view tessemu_version() { return TESSEMU_VERSION; }
+
+namespace {
+
+Json to_json(Config const& config)
+{
+    Json j = Json::object();
+    for (auto const& [name, value] : config) std::visit([&](auto const& v) { j[name] = v; }, value);
+    return j;
+}
+
+Json to_json(FlopCount const& c)
+{
+    return {{"add", c.add},   {"mul", c.mul},     {"mad", c.mad},        {"div", c.div},
+            {"sqrt", c.sqrt}, {"rsqrt", c.rsqrt}, {"compare", c.compare}};
+}
+
+Json start(ReportHeader const& header)
+{
+    Json j;
+    j["schema"] = "tessemu." + header.verb + "/1";
+    j["tool"] = {{"name", "tessemu"}, {"version", tessemu_version()}};
+    j["config"] = to_json(header.config);
+    j["inputs"] = Json::array();
+    for (auto const& [name, sha256] : header.inputs)
+        j["inputs"].push_back({{"name", name}, {"sha256", sha256}});
+    j["warnings"] = header.warnings;
+    return j;
+}
+
+void add_statistics(Json& j, DrawStatistics const& s)
+{
+    PipelineStatistics const& p = s.pipeline;
+    j["counters"] = {{"IAVertices", p.IAVertices},
+                     {"IAPrimitives", p.IAPrimitives},
+                     {"VSInvocations", p.VSInvocations},
+                     {"HSInvocations", p.HSInvocations},
+                     {"DSInvocations", p.DSInvocations},
+                     {"GSInvocations", p.GSInvocations},
+                     {"GSPrimitives", p.GSPrimitives},
+                     {"CInvocations", p.CInvocations},
+                     {"CPrimitives", p.CPrimitives},
+                     {"PSInvocations", p.PSInvocations},
+                     {"CSInvocations", p.CSInvocations},
+                     {"HSControlPointInvocations", p.HSControlPointInvocations},
+                     {"HSPatchConstantInvocations", p.HSPatchConstantInvocations}};
+    Json& stages = j["stages"] = Json::object();
+    for (StageStatistics const& stage : s.stages) {
+        Json fetches = Json::array();
+        for (FetchStatistics const& f : stage.fetches)
+            fetches.push_back({{"resource", f.resource},
+                               {"kind", name_of(f.kind)},
+                               {"count", f.count},
+                               {"bytes", f.bytes},
+                               {"unique_bytes", f.unique_bytes}});
+        stages[stage.stage] = {{"invocations", stage.invocations},
+                               {"flops", to_json(stage.flops)},
+                               {"flops_loop10", flops_loop10(stage.flops)},
+                               {"fetches", fetches},
+                               {"output_bytes", stage.output_bytes}};
+    }
+}
+
+// The hash covers everything but itself, the tool and the run; then whatever `add_result` adds.
+template <class AddResult>
+std::string finish(Json j, ReportHeader const& header, AddResult const& add_result)
+{
+    Json hashed = j;
+    hashed.erase("tool");
+    std::string const compact = hashed.dump();
+    Sha256 hash;
+    hash.add(compact.data(), compact.size());
+    add_result(hash);
+    j["hash"] = hash.hex();
+    j["run"] = to_json(header.run);
+    return j.dump(2) + "\n";
+}
+
+std::string counted(std::uint64_t n)
+{
+    std::string digits = std::to_string(n), out;
+    for (std::size_t i = 0; i < digits.size(); ++i) {
+        if (i && (digits.size() - i) % 3 == 0) out += ',';
+        out += digits[i];
+    }
+    return out;
+}
+
+std::string histogram(std::vector<std::pair<std::size_t, std::size_t>> const& entries)
+{
+    std::string out;
+    for (auto const& [key, n] : entries) out += fmt::format("{}{}:{}", out.empty() ? "" : "  ", key, n);
+    return out.empty() ? "-" : out;
+}
+
+Json pairs(std::vector<std::pair<std::size_t, std::size_t>> const& entries)
+{
+    Json j = Json::object();
+    for (auto const& [key, n] : entries) j[std::to_string(key)] = n;
+    return j;
+}
+
+} // namespace
+
+std::string draw_report(ReportHeader const& header, DrawStatistics const& statistics,
+                        RenderTarget const& target)
+{
+    Json j = start(header);
+    add_statistics(j, statistics);
+    return finish(std::move(j), header, [&](Sha256& hash) {
+        auto const width = std::size_t(target.width());
+        for (int y = 0; y < target.height(); ++y) hash.add(target.color_row(y), width * 4 * sizeof(float));
+        for (int y = 0; y < target.height(); ++y) hash.add(target.depth_row(y), width * sizeof(float));
+    });
+}
+
+std::string export_report(ReportHeader const& header, DrawStatistics const& statistics,
+                          MeshWriter const& mesh)
+{
+    Json j = start(header);
+    j["mesh"] = {{"vertices", mesh.vertices()}, {"triangles", mesh.triangles()}};
+    add_statistics(j, statistics);
+    return finish(std::move(j), header, [&](Sha256& hash) { mesh.add_to_hash(hash); });
+}
+
+std::string info_report(ReportHeader const& header, MeshSummary const& s,
+                        std::vector<PatchCount> const& patches)
+{
+    Json j = start(header);
+    j["mesh"] = {{"vertices", s.vertices},
+                 {"faces", s.faces},
+                 {"edges", s.edges},
+                 {"boundary_edges", s.boundary_edges},
+                 {"components", s.components},
+                 {"unused_vertices", s.unused_vertices},
+                 {"regular_faces", s.regular_faces},
+                 {"faces_by_size", pairs(s.faces_by_size)},
+                 {"interior_valences", pairs(s.interior_valences)},
+                 {"boundary_valences", pairs(s.boundary_valences)}};
+    j["patches"] = Json::array();
+    for (PatchCount const& c : patches)
+        j["patches"].push_back({{"kind", c.kind.name},
+                                {"patches", c.patches},
+                                {"connectivity_types", c.types},
+                                {"min_inputs", c.min_inputs},
+                                {"max_inputs", c.max_inputs}});
+    return finish(std::move(j), header, [](Sha256&) {});
+}
+
+std::string tessellate_report(ReportHeader const& header, TessellatorCase const& c,
+                              TessellatedPatch const& patch)
+{
+    Json j = start(header);
+    j["case"] = format_tessellator_case(c);
+    j["points"] = patch.points();
+    j["u"] = patch.u;
+    j["v"] = patch.v;
+    j["indices"] = patch.indices;
+    return finish(std::move(j), header, [](Sha256&) {});
+}
+
+std::string counters_table(DrawStatistics const& s)
+{
+    std::string out = fmt::format("{:<16} {:>13} {:>14} {:>14} {:>11} {:>9} {:>9}\n", "stage", "invocations",
+                                  "add", "mul", "mad", "div", "sqrt");
+    for (StageStatistics const& stage : s.stages)
+        out += fmt::format("{:<16} {:>13} {:>14} {:>14} {:>11} {:>9} {:>9}\n", stage.stage,
+                           counted(stage.invocations), counted(stage.flops.add), counted(stage.flops.mul),
+                           counted(stage.flops.mad), counted(stage.flops.div), counted(stage.flops.sqrt));
+    out += fmt::format("\n{:<16} {:<22} {:<15} {:>15} {:>16} {:>16}\n", "fetches of", "resource", "kind", "count",
+                       "bytes", "unique bytes");
+    for (StageStatistics const& stage : s.stages)
+        for (FetchStatistics const& f : stage.fetches)
+            out += fmt::format("{:<16} {:<22} {:<15} {:>15} {:>16} {:>16}\n", stage.stage, f.resource,
+                               name_of(f.kind), counted(f.count), counted(f.bytes), counted(f.unique_bytes));
+    PipelineStatistics const& p = s.pipeline;
+    out += fmt::format("\n{} patches, {} domain points, {} triangles, {} after clipping, {} pixels shaded\n",
+                       counted(p.HSInvocations), counted(p.DSInvocations), counted(p.CInvocations),
+                       counted(p.CPrimitives), counted(p.PSInvocations));
+    return out;
+}
+
+std::string info_table(MeshSummary const& s, std::vector<PatchCount> const& patches)
+{
+    std::string out =
+        fmt::format("vertices           {}{}\nfaces              {}   by sides  {}\nedges              {}\n"
+                    "boundary edges     {}   {}\ncomponents         {}\ninterior valences  {}\n"
+                    "boundary valences  {}\nregular faces      {}\n",
+                    s.vertices, s.unused_vertices ? fmt::format("   ({} unused)", s.unused_vertices) : "", s.faces,
+                    histogram(s.faces_by_size), s.edges, s.boundary_edges, s.boundary_edges ? "open" : "closed",
+                    s.components, histogram(s.interior_valences), histogram(s.boundary_valences), s.regular_faces);
+    if (patches.empty()) return out;
+    out += fmt::format("\n{:<18} {:>9} {:>20} {:>10}\n", "patch kind", "patches", "connectivity types", "inputs");
+    for (PatchCount const& c : patches)
+        out += fmt::format("{:<18} {:>9} {:>20} {:>10}\n", c.kind.name, c.patches, c.types,
+                           c.min_inputs == c.max_inputs ? std::to_string(c.min_inputs)
+                                                        : fmt::format("{}-{}", c.min_inputs, c.max_inputs));
+    return out;
+}
+
+} // namespace tessemu

@@ -1,0 +1,30 @@
+// The tessellator's batch format: one case a line, one answer a line.
+//
+//     case:    <domain> <partitioning> <output> <f0> <f1> ...   factors as 8 hexadecimal digits of the float
+//     answer:  <points> <indices> <points hash> <indices hash>  FNV-1a 64 over little-endian words
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/error.h"
+#include "emu/tessellator.h"
+
+#include <string>
+
+namespace tessemu {
+
+struct TessellatorCase {
+    TessellatorState state;
+    TessFactors factors{};
+};
+
+/// Throws FormatError that names the line and the word.
+TessellatorCase parse_tessellator_case(std::string_view text, std::string const& file, int line);
+std::string format_tessellator_case(TessellatorCase const& c);
+
+TessellatedPatch run_tessellator_case(TessellatorCase const& c);
+
+/// The answer line of a patch.
+std::string tessellator_answer(TessellatedPatch const& patch);
+
+} // namespace tessemu

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/technique.h"
+
+#include "pipeline/catmull_clark.h"
+#include "pipeline/gregory_stencil_technique.h"
+
+#include <algorithm>
+
+namespace tessemu {
+
+std::vector<std::unique_ptr<Technique>> const& techniques()
+{
+    static std::vector<std::unique_ptr<Technique>> const all = [] {
+        std::vector<std::unique_ptr<Technique>> t;
+        t.push_back(make_gregory_stencil_technique());
+        return t;
+    }();
+    return all;
+}
+
+Technique const& find_technique(std::string_view name)
+{
+    std::string known;
+    for (auto const& t : techniques()) {
+        if (t->info().name == name) return *t;
+        known += (known.empty() ? "" : ", ") + t->info().name;
+    }
+    throw Error("scheme '" + std::string(name) + "' is not known; there is " + known);
+}
+
+FacePoint domain_to_face(PatchOrigin const& origin, float u, float v)
+{
+    if (origin.sides == 3) {
+        float const weight[3] = {u, v, 1 - u - v};
+        return {weight[(3 - origin.rotation) % 3], weight[(4 - origin.rotation) % 3]};
+    }
+    switch (origin.rotation) {
+    case 1: return {1 - v, u};
+    case 2: return {1 - u, 1 - v};
+    case 3: return {v, 1 - u};
+    default: return {u, v};
+    }
+}
+
+PreparedMesh prepare_mesh(ControlMesh mesh, Technique const& technique)
+{
+    PreparedMesh out;
+    out.mesh = std::make_unique<ControlMesh>(std::move(mesh));
+    out.topology = std::make_unique<Topology>(*out.mesh);
+    std::size_t largest = 0, polygons = 0;
+    for (std::size_t f = 0; f < out.mesh->faces(); ++f) {
+        largest = std::max(largest, out.mesh->face(f).size());
+        if (out.mesh->face(f).size() > 4) ++polygons;
+    }
+    if (polygons > 0 && !technique.takes_polygons()) {
+        auto split = std::make_unique<ControlMesh>(catmull_clark_step(*out.topology));
+        out.warnings.push_back(std::to_string(polygons) + " faces have more than 4 sides (up to " +
+                               std::to_string(largest) +
+                               "): one Catmull-Clark step makes " + std::to_string(split->faces()) +
+                               " quads of the mesh's " + std::to_string(out.mesh->faces()) + " faces");
+        out.topology = std::make_unique<Topology>(*split);
+        out.mesh = std::move(split);
+    }
+    return out;
+}
+
+} // namespace tessemu

@@ -1,0 +1,114 @@
+// Techniques: how a control mesh becomes draws.
+//
+// A technique builds a patch mesh once: patch kinds, connectivity types, tables, index buffers. The
+// patch mesh then gives passes for any tess factor, machine or view, so sweeps pay for tables once. A
+// scheme is one folder of shaders and one technique file, registered in one line of technique.cpp.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/graphics_pipeline.h"
+#include "pipeline/topology.h"
+#include "shaders_cpp/projected_surface.h"
+
+#include <map>
+
+namespace tessemu {
+
+/// A free choice of a scheme that a user may set.
+struct SchemeParameter {
+    std::string name, meaning;
+    double default_value;
+};
+
+struct SchemeInfo {
+    std::string name;    ///< as on the command line
+    std::string paper;   ///< "LOOP09"
+    std::string section; ///< "3, 4.3, 4.6"
+    std::string summary;
+    std::vector<SchemeParameter> parameters;
+};
+
+/// Where a patch comes from: its domain's corner 0 is corner `rotation` of the face.
+struct PatchOrigin {
+    std::uint32_t face = 0;
+    std::uint8_t rotation = 0, sides = 4;
+};
+
+/// A domain point in its face: quad, u from corner 0 to 1 and v from corner 0 to 3; triangle, weights of
+/// corners 0 and 1. Exact for 16-bit fractions.
+struct FacePoint {
+    float u, v;
+};
+FacePoint domain_to_face(PatchOrigin const& origin, float u, float v);
+
+/// Patches of one shape: one domain shader, one number of control points.
+struct PatchKind {
+    std::string name; ///< "regular quad"
+    int color_index;  ///< tells kinds apart in pictures
+};
+
+/// What a pass is made for.
+struct PassSettings {
+    float tess_factor = 1; ///< uniform; every edge and the inside
+    Partitioning partitioning = Partitioning::FractionalOdd;
+    Machine machine;
+    bool true_normals = false; ///< interior normals of the rational surface, not of frozen F
+    Matrix4 view_projection = kIdentity;
+    /// Called once per pass; absent: rasterization is off.
+    std::function<std::shared_ptr<PixelProgram const>(PatchKind const&)> pixel_shader;
+};
+
+/// One draw of a technique. Dispatches and stream-outs will stand beside it.
+struct DrawPass {
+    PatchKind kind;
+    GraphicsPipeline pipeline;
+    DrawCall call; ///< views into the patch mesh, which must outlive the pass
+    std::span<PatchOrigin const> patches; ///< by primitive id
+};
+
+/// Patches of one kind and type count, for `info`.
+struct PatchCount {
+    PatchKind kind;
+    std::size_t patches = 0, types = 0;
+    int min_inputs = 0, max_inputs = 0;
+};
+
+/// A control mesh in the form that a technique draws. Holds its tables and index buffers.
+class PatchMesh {
+public:
+    virtual ~PatchMesh() = default;
+    virtual std::vector<DrawPass> passes(PassSettings const& settings) const = 0;
+    virtual std::vector<PatchCount> patch_counts() const = 0;
+    /// What the scheme could not honour, in the user's words.
+    virtual std::vector<std::string> const& warnings() const = 0;
+};
+
+class Technique {
+public:
+    virtual ~Technique() = default;
+    virtual SchemeInfo info() const = 0;
+    /// True if the scheme takes faces with more than 4 sides.
+    virtual bool takes_polygons() const { return false; }
+    /// \param topology    of a mesh that the scheme takes; both are read only here
+    /// \param parameters  those that differ from their defaults; a wrong name throws Error
+    /// Throws LimitError for a patch that no draw can hold.
+    virtual std::unique_ptr<PatchMesh> build(Topology const& topology,
+                                             std::map<std::string, double> const& parameters) const = 0;
+};
+
+/// All techniques in the order of the papers.
+std::vector<std::unique_ptr<Technique>> const& techniques();
+/// Throws Error that lists the known names.
+Technique const& find_technique(std::string_view name);
+
+/// A control mesh as a technique takes it: faces with more than 4 sides are split by one Catmull-Clark
+/// step on the whole mesh, with a warning.
+struct PreparedMesh {
+    std::unique_ptr<ControlMesh> mesh;
+    std::unique_ptr<Topology> topology; ///< of *mesh
+    std::vector<std::string> warnings;
+};
+PreparedMesh prepare_mesh(ControlMesh mesh, Technique const& technique);
+
+} // namespace tessemu

@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+"""Writes the project's own control cages into models/ (Apache-2.0, like everything here).
+
+Standard library only; coordinates are rounded to 1/1024, so the files do not depend on the machine.
+"""
+import math
+import pathlib
+
+OUT = pathlib.Path(__file__).resolve().parent.parent / "models"
+
+
+class Cage:
+    def __init__(self):
+        self.v, self.f = [], []
+
+    def vertex(self, x, y, z):
+        self.v.append((x, y, z))
+        return len(self.v) - 1
+
+    def ring(self, n, r, y, turn=0.5, shape=lambda a: (0, 0, 0)):
+        ids = []
+        for k in range(n):
+            a = 2 * math.pi * (k + turn) / n
+            dx, dy, dz = shape(a)
+            ids.append(self.vertex(r * math.cos(a) + dx, y + dy, -r * math.sin(a) + dz))
+        return ids
+
+    def strip(self, low, high, skip=()):
+        n = len(low)
+        for k in range(n):
+            if k not in skip:
+                self.f.append((low[k], low[(k + 1) % n], high[(k + 1) % n], high[k]))
+
+    def write(self, name, about):
+        q = lambda x: "%.10g" % (round(x * 1024) / 1024 + 0.0)
+        with open(OUT / (name + ".obj"), "w", newline="\n") as out:
+            out.write("# %s\n# SPDX-License-Identifier: Apache-2.0\n" % about)
+            for p in self.v:
+                out.write("v %s %s %s\n" % tuple(map(q, p)))
+            for f in self.f:
+                out.write("f %s\n" % " ".join(str(i + 1) for i in f))
+
+
+def jug():
+    """Handle roots give irregular quads, the base and the collar triangles, the lip a boundary."""
+    c = Cage()
+    pole = c.vertex(0, 0.03, 0)
+    rings = [c.ring(8, r, y) for r, y in
+             ((0.56, 0.0), (0.94, 0.30), (1.10, 0.80), (0.90, 1.30), (0.55, 1.68), (0.48, 1.98))]
+    for k in range(8):
+        c.f.append((pole, rings[0][(k + 1) % 8], rings[0][k]))
+    back = 3  # the face whose middle looks along -x
+    for i in range(5):
+        c.strip(rings[i], rings[i + 1], skip=(back,) if i in (2, 4) else ())
+
+    def spout(a):
+        t = max(0.0, math.cos(a)) ** 4
+        return (0.42 * t, 0.12 * t, 0.0)
+    collar = c.ring(16, 0.63, 2.24, 1.0, lambda a: tuple(0.5 * x for x in spout(a)))
+    lip = c.ring(16, 0.80, 2.38, 1.0, spout)
+    neck = rings[5]
+    for k in range(8):  # 8 to 16: three triangles a side
+        a, b = neck[k], neck[(k + 1) % 8]
+        p, q, r = collar[2 * k], collar[2 * k + 1], collar[(2 * k + 2) % 16]
+        c.f += [(a, q, p), (a, b, q), (b, r, q)]
+    c.strip(collar, lip)
+
+    def section(x, y, nx, ny, thick, wide):  # outer right, outer left, inner left, inner right
+        s = math.hypot(nx, ny)
+        nx, ny = thick * nx / s, thick * ny / s
+        return [c.vertex(x + nx, y + ny, -wide), c.vertex(x + nx, y + ny, wide),
+                c.vertex(x - nx, y - ny, wide), c.vertex(x - nx, y - ny, -wide)]
+
+    n, m = (back + 1) % 8, back
+    top = [rings[5][m], rings[5][n], rings[4][n], rings[4][m]]
+    bottom = [rings[2][m], rings[2][n], rings[3][n], rings[3][m]]
+    path = [top, section(-0.98, 1.96, 0.05, 1, 0.10, 0.13), section(-1.46, 1.84, -0.7, 0.75, 0.10, 0.13),
+            section(-1.66, 1.45, -1, 0.0, 0.10, 0.13), section(-1.46, 1.12, -0.6, -0.75, 0.11, 0.14), bottom]
+    for a, b in zip(path, path[1:]):
+        for k in range(4):
+            c.f.append((a[(k + 1) % 4], a[k], b[k], b[(k + 1) % 4]))
+    c.write("jug", "A jug: irregular quads at the handle, triangles at base and collar, an open lip.")
+
+
+def spindle():
+    """Triangles only, closed: two poles and antiprism bands."""
+    c = Cage()
+    south = c.vertex(0, -1.4, 0)
+    rings = [c.ring(6, r, y, t) for r, y, t in
+             ((0.55, -1.0, 0.0), (0.95, -0.35, 0.5), (0.95, 0.35, 0.0), (0.55, 1.0, 0.5))]
+    north = c.vertex(0, 1.4, 0)
+    for k in range(6):
+        c.f.append((south, rings[0][(k + 1) % 6], rings[0][k]))
+        c.f.append((north, rings[3][k], rings[3][(k + 1) % 6]))
+    for i in range(3):
+        low, high = rings[i], rings[i + 1]
+        for k in range(6):
+            if i % 2 == 0:
+                c.f += [(low[k], low[(k + 1) % 6], high[k]), (low[(k + 1) % 6], high[(k + 1) % 6], high[k])]
+            else:
+                c.f += [(low[k], high[(k + 1) % 6], high[k]), (low[k], low[(k + 1) % 6], high[(k + 1) % 6])]
+    c.write("spindle", "A spindle of triangles, closed.")
+
+
+def star():
+    """One vertex of valence 6 amid quads, open all round: three hills and three valleys."""
+    c = Cage()
+    n, size = 6, 3
+    ids = {}
+
+    def at(sector, i, j):
+        if i == 0 and j == 0:
+            key = (0, 0, 0)
+        elif j == 0:
+            key = (sector, i, 0)
+        elif i == 0:
+            key = ((sector + 1) % n, j, 0)
+        else:
+            key = (sector, i, j)
+        if key not in ids:
+            s, p, q = key
+            a, b = 2 * math.pi * s / n, 2 * math.pi * (s + 1) / n
+            x, z = p * math.cos(a) + q * math.cos(b), p * math.sin(a) + q * math.sin(b)
+            r2 = x * x + z * z
+            angle = math.atan2(z, x)
+            ids[key] = c.vertex(0.5 * x, 0.09 * r2 * math.cos(3 * angle) * 0.6, -0.5 * z)
+        return ids[key]
+
+    for s in range(n):
+        for i in range(size):
+            for j in range(size):
+                c.f.append((at(s, i, j), at(s, i + 1, j), at(s, i + 1, j + 1), at(s, i, j + 1)))
+    c.write("saddle_star", "A monkey saddle around one vertex of valence 6, open all round.")
+
+
+if __name__ == "__main__":
+    jug()
+    spindle()
+    star()
