@@ -207,6 +207,20 @@ struct Job {
     double load_seconds = 0, build_seconds = 0;
 };
 
+// Errors about the mesh name the file, and the line where it is known.
+void build(Model& model, Technique const& technique, std::map<std::string, double> const& parameters,
+           PreparedMesh& prepared, std::unique_ptr<PatchMesh>& patches)
+{
+    try {
+        prepared = prepare_mesh(std::move(model.mesh), technique);
+        patches = technique.build(*prepared.topology, parameters);
+    } catch (MeshError const& e) {
+        throw FormatError(model.path, model.line_of_face(e.face), e.what());
+    } catch (LimitError const& e) {
+        throw FormatError(model.path, 0, e.what());
+    }
+}
+
 Job prepare(Options const& o, std::string const& verb)
 {
     Job job;
@@ -231,8 +245,7 @@ Job prepare(Options const& o, std::string const& verb)
     Model model = load_model(o.model);
     job.load_seconds = load_clock.seconds();
     Stopwatch const build_clock;
-    job.prepared = prepare_mesh(std::move(model.mesh), technique);
-    job.patches = technique.build(*job.prepared.topology, parameters);
+    build(model, technique, parameters, job.prepared, job.patches);
     job.build_seconds = build_clock.seconds();
 
     ReportHeader& h = job.header;
@@ -336,26 +349,31 @@ int run_export(Options const& o)
 
 int run_info(Options const& o)
 {
-    Model const model = load_model(o.model);
+    Model model = load_model(o.model);
     print_warnings(model.warnings);
-    Topology const topology(model.mesh);
-    MeshSummary const summary = summarize(topology);
     Technique const& technique = find_technique(o.scheme);
     ReportHeader header{"info", {{"scheme", o.scheme}}, {{model.name, model.sha256}}, model.warnings, {}};
-    std::vector<PatchCount> patches;
-    // A mesh that the scheme refuses still has figures: the refusal becomes a warning.
+    MeshSummary summary;
     try {
-        PreparedMesh const prepared = prepare_mesh(model.mesh, technique);
-        auto const mesh = technique.build(*prepared.topology, {});
-        patches = mesh->patch_counts();
-        for (auto const* more : {&prepared.warnings, &mesh->warnings()}) {
-            print_warnings(*more);
-            header.warnings.insert(header.warnings.end(), more->begin(), more->end());
-        }
-    } catch (LimitError const& e) {
-        header.warnings.push_back(o.scheme + " cannot draw this mesh: " + e.what());
-        print_warnings({header.warnings.back()});
+        summary = summarize(Topology(model.mesh));
+    } catch (MeshError const& e) {
+        throw FormatError(model.path, model.line_of_face(e.face), e.what());
     }
+    // A mesh that the scheme refuses still has figures: the refusal becomes a warning.
+    std::vector<PatchCount> patches;
+    PreparedMesh prepared;
+    std::unique_ptr<PatchMesh> mesh;
+    std::vector<std::string> more;
+    try {
+        build(model, technique, {}, prepared, mesh);
+        patches = mesh->patch_counts();
+        more = prepared.warnings;
+        more.insert(more.end(), mesh->warnings().begin(), mesh->warnings().end());
+    } catch (FormatError const& e) {
+        more.push_back(o.scheme + " cannot draw this mesh: " + e.what());
+    }
+    print_warnings(more);
+    header.warnings.insert(header.warnings.end(), more.begin(), more.end());
     if (!o.json.empty()) write_result(o.json, info_report(header, summary, patches));
     if (o.json != "-") fmt::print("{}", info_table(summary, patches));
     return 0;

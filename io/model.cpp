@@ -28,7 +28,9 @@ Model load_model(std::string const& path_or_name)
     out.name = std::filesystem::path(path_or_name).filename().string();
     out.mesh = std::move(obj.mesh);
     out.mesh.name = out.name;
+    out.face_lines = std::move(obj.face_lines);
     out.warnings = std::move(obj.warnings);
+    out.path = path_or_name;
     Sha256 hash;
     hash.add(text.data(), text.size());
     out.sha256 = hash.hex();

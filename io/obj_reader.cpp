@@ -272,14 +272,18 @@ ObjFile read_obj(std::string_view text, std::string const& name)
         out.warnings.push_back(fmt::format("{}:{}: {}", name, line, what));
     };
 
+    out.face_lines = scan.face_line;
     Parsed const parsed = parse_with_tinyobj(scan.text, name);
     if (parsed.positions.size() != scan.vertex_line.size() || parsed.corners != scan.face_corners)
         throw FormatError(name, 0, "the parser lost vertices or faces");
     mesh.positions = parsed.positions;
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         glm::vec3 const p = mesh.positions[v];
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            throw FormatError(name, scan.vertex_line[v], "coordinate is beyond the range of a 32-bit float");
+        for (int k = 0; k < 3; ++k)
+            if (!(std::abs(p[k]) <= kMaxCoordinate))
+                throw FormatError(name, scan.vertex_line[v],
+                                  fmt::format("coordinate is {}, the limit is {}: normals would overflow",
+                                              p[k], kMaxCoordinate));
     }
 
     std::vector<std::uint32_t> face;

@@ -15,15 +15,20 @@ namespace tessemu {
 
 struct ObjFile {
     ControlMesh mesh;
+    std::vector<int> face_lines;       ///< where each face stands in the file
     std::vector<std::string> warnings; ///< with file name and line
 };
+
+/// Largest magnitude of a coordinate: the squared length of a normal, about its fourth power, must stay
+/// within a 32-bit float.
+inline constexpr float kMaxCoordinate = 1e9f;
 
 /// Reads v, f and t statements; everything else is skipped (unknown tags with a warning). Vertices
 /// that no face uses stay. Accepts Windows line ends, a byte order mark and line continuations.
 ///
 /// \param name  for messages and as the mesh's name
-/// Throws FormatError with file and line for: a coordinate that is missing, not a number or not
-/// finite; an index of 0 or out of range; a face with fewer than 3 or repeated vertices; no face at all.
+/// Throws FormatError with file and line for: a coordinate that is missing, not a number or
+/// beyond kMaxCoordinate; an index of 0 or out of range; a face with fewer than 3 or repeated vertices; no face at all.
 ObjFile read_obj(std::string_view text, std::string const& name);
 ObjFile read_obj_file(std::filesystem::path const& path);
 

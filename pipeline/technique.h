@@ -109,6 +109,7 @@ struct PreparedMesh {
     std::unique_ptr<Topology> topology; ///< of *mesh
     std::vector<std::string> warnings;
 };
+/// Throws MeshError.
 PreparedMesh prepare_mesh(ControlMesh mesh, Technique const& technique);
 
 } // namespace tessemu

@@ -36,7 +36,7 @@ Topology::Topology(ControlMesh const& mesh) : mesh_(&mesh)
     for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
         auto const face = mesh.face(f);
         if (face.size() < 3)
-            throw MeshError("face " + std::to_string(f + 1) + " has " + std::to_string(face.size()) +
+            throw MeshError(f, "face " + std::to_string(f + 1) + " has " + std::to_string(face.size()) +
                             " vertices, at least 3 are needed");
         for (std::uint32_t h = mesh.face_start[f]; h < mesh.face_start[f + 1]; ++h) {
             half_edge_face_[h] = f;
@@ -51,7 +51,7 @@ Topology::Topology(ControlMesh const& mesh) : mesh_(&mesh)
     ring_index_.resize(corners);
     boundary_.assign(vertices, 0);
     std::vector<std::pair<std::uint32_t, HalfEdge>> outgoing; // (far end, half-edge), sorted
-    std::vector<std::uint32_t> incoming;                      // near ends before the vertex, sorted
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> incoming; // (near end, face), sorted
     std::vector<HalfEdge> ordered;
     for (std::uint32_t v = 0; v < vertices; ++v) {
         auto const ring = std::span(ring_).subspan(ring_start_[v], ring_start_[v + 1] - ring_start_[v]);
@@ -59,9 +59,9 @@ Topology::Topology(ControlMesh const& mesh) : mesh_(&mesh)
         outgoing.clear(), incoming.clear(), ordered.clear();
         for (HalfEdge h : ring) {
             outgoing.emplace_back(vertex_of(next(h)), h);
-            incoming.push_back(vertex_of(previous(h)));
-            if (outgoing.back().first == v || incoming.back() == v)
-                throw MeshError("face " + std::to_string(face_of(h) + 1) + " names vertex " +
+            incoming.emplace_back(vertex_of(previous(h)), face_of(h));
+            if (outgoing.back().first == v || incoming.back().first == v)
+                throw MeshError(face_of(h), "face " + std::to_string(face_of(h) + 1) + " names vertex " +
                                 vertex_name(v) + " twice");
         }
         std::sort(outgoing.begin(), outgoing.end());
@@ -69,23 +69,27 @@ Topology::Topology(ControlMesh const& mesh) : mesh_(&mesh)
         for (std::size_t i = 0; i + 1 < outgoing.size(); ++i) {
             std::uint32_t const f = face_of(outgoing[i].second), g = face_of(outgoing[i + 1].second);
             if (f == g)
-                throw MeshError("face " + std::to_string(f + 1) + " names vertex " + vertex_name(v) +
+                throw MeshError(f, "face " + std::to_string(f + 1) + " names vertex " + vertex_name(v) +
                                 " twice");
             if (outgoing[i].first == outgoing[i + 1].first)
-                throw MeshError("edge " + edge_name(v, outgoing[i].first) +
+                throw MeshError(std::max(f, g), "edge " + edge_name(v, outgoing[i].first) +
                                 " is used in the same direction by faces " + std::to_string(f + 1) +
                                 " and " + std::to_string(g + 1) +
                                 ": more than two faces meet there, or one is turned over");
         }
         for (std::size_t i = 0; i + 1 < incoming.size(); ++i)
-            if (incoming[i] == incoming[i + 1])
-                throw MeshError("edge " + edge_name(incoming[i], v) +
-                                " is used in the same direction by two faces: more than two faces "
-                                "meet there, or one is turned over");
+            if (incoming[i].first == incoming[i + 1].first)
+                throw MeshError(incoming[i + 1].second,
+                                "edge " + edge_name(incoming[i].first, v) +
+                                    " is used in the same direction by faces " +
+                                    std::to_string(incoming[i].second + 1) + " and " +
+                                    std::to_string(incoming[i + 1].second + 1) +
+                                    ": more than two faces meet there, or one is turned over");
 
         HalfEdge start = outgoing.front().second; // interior: the smallest neighbour
         for (auto const& [far, h] : outgoing) {
-            if (std::binary_search(incoming.begin(), incoming.end(), far)) continue;
+            auto const it = std::lower_bound(incoming.begin(), incoming.end(), std::pair(far, 0u));
+            if (it != incoming.end() && it->first == far) continue;
             boundary_[v] = 1;
             start = h;
             break;
@@ -100,8 +104,9 @@ Topology::Topology(ControlMesh const& mesh) : mesh_(&mesh)
             if (ordered.size() > ring.size()) break;
         }
         if (ordered.size() != ring.size())
-            throw MeshError("the faces around vertex " + vertex_name(v) + " form " +
-                            "more than one fan (" + std::to_string(ordered.size()) + " of " +
+            throw MeshError(face_of(ring[0]),
+                            "the faces around vertex " + vertex_name(v) +
+                            " form more than one fan (" + std::to_string(ordered.size()) + " of " +
                             std::to_string(ring.size()) + " faces are connected through edges)");
         for (std::uint32_t j = 0; j < ordered.size(); ++j) {
             ring[j] = ordered[j];

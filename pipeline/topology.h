@@ -14,7 +14,8 @@ namespace tessemu {
 
 /// The mesh is not an oriented manifold; what() names the vertices and faces, counted from 1.
 struct MeshError : Error {
-    using Error::Error;
+    MeshError(std::uint32_t face_, std::string const& what) : Error(what), face(face_) {}
+    std::uint32_t face; ///< one of the faces concerned, from 0
 };
 
 /// A corner of a face: half-edge number, the position in ControlMesh::face_vertices.

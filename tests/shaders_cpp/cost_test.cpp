@@ -1,0 +1,185 @@
+// Costs of the shaders: compile-time tallies against the papers' numbers and against run-time counts.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "emu/tally.h"
+#include "pipeline/frame.h"
+#include "pipeline/gregory_stencils.h"
+#include "shaders_cpp/gregory/domain_shaders.h"
+#include "shaders_cpp/gregory/stencil_hull_shader.h"
+#include "io/obj_reader.h"
+#include "pipeline/builtin_models.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <set>
+
+namespace tessemu {
+namespace {
+
+struct Cost {
+    FlopCount flops;
+    std::uint64_t control_points = 0, patch_constants = 0;
+};
+
+// The evaluation function by itself, up to the cross product.
+template <class Inside> constexpr Cost evaluation_cost()
+{
+    Cost c;
+    c.flops = tally([&](FlopCount* sink) {
+        ControlPoints<ControlVertex<Tally>> const patch(sink, Inside::kControlPoints, &c.control_points);
+        DomainInput<Tally> const in{Tally(0.25, sink), Tally(0.5, sink), Tally(0.25, sink), 0};
+        TangentFrame<Tally> const s = Inside::template evaluate<Tally>(patch, in, false);
+        (void)cross(s.du, s.dv);
+    });
+    return c;
+}
+
+// LOOP10: 162 for the bicubic; sheet section 8: 198 for Gregory with all scalar work (LOOP10's 174 leaves
+// out the 24 multiplications that apply the blend weights); 258 for the triangle.
+static_assert(flops_loop10(evaluation_cost<RegularQuadInside>().flops) == 162);
+static_assert(flops_loop10(evaluation_cost<GregoryQuadInside>().flops) == 198);
+static_assert(flops_loop10(evaluation_cost<GregoryTriangleInside>().flops) == 258);
+static_assert(evaluation_cost<GregoryQuadInside>().flops.div == 4);
+static_assert(evaluation_cost<GregoryTriangleInside>().flops.div == 3);
+static_assert(evaluation_cost<RegularQuadInside>().control_points == 16);
+static_assert(evaluation_cost<GregoryQuadInside>().control_points == 20);
+static_assert(evaluation_cost<GregoryTriangleInside>().control_points == 15);
+
+// The whole domain shader at a point; the value of (u,v) decides between inside, edge and corner.
+template <class Shader> constexpr Cost domain_cost(double u, double v)
+{
+    constexpr int N = Shader::kDomain == TessellatorDomain::Quad ? 4 : 3;
+    Cost c;
+    c.flops = tally([&](FlopCount* sink) {
+        ControlPoints<ControlVertex<Tally>> const patch(sink, Shader::kControlPoints, &c.control_points);
+        ControlPoints<EdgeRegister<Tally>> const registers(sink, 6 * N, &c.patch_constants);
+        DomainInput<Tally> const in{Tally(u, sink), Tally(v, sink), Tally(1 - u - v, sink), 0};
+        (void)ProjectedSurface<Shader>{}(in, patch, registers);
+    });
+    return c;
+}
+
+TEST(EvaluationCost, ReadsTwentyFifteenAndSixteenControlPoints)
+{
+    EXPECT_EQ(evaluation_cost<GregoryQuadInside>().control_points, 20u);
+    EXPECT_EQ(evaluation_cost<GregoryTriangleInside>().control_points, 15u);
+    EXPECT_EQ(evaluation_cost<RegularQuadInside>().control_points, 16u);
+}
+
+// A stencil row costs 3 per input; with one extraordinary vertex there are 2n + 8 inputs: 6n + 24 (LOOP10).
+TEST(StencilRow, CostsThreeMultiplicationsPerInput)
+{
+    for (int n = 3; n <= 12; ++n) {
+        int const inputs = 2 * n + 8;
+        std::vector<float> const weights(std::size_t(inputs), 0.5f);
+        std::vector<std::uint32_t> const masks{0xffffffffu}, words{0, 0, 1, 0, 0, 0, 0, 0};
+        std::vector<std::uint8_t> order(static_cast<std::size_t>(inputs));
+        std::iota(order.begin(), order.end(), std::uint8_t(0));
+        StencilHullShader<TessellatorDomain::Quad> hs;
+        hs.weights = {weights, 0, "w"};
+        hs.zero_masks = {masks, 1, "m"};
+        hs.patches = {words, 2, "p"};
+        hs.order = {order, 3, "o"};
+        FlopCount const c = tally([&](FlopCount* sink) {
+            // A weight from memory is no constant: it meets the control point, which carries the sink.
+            ControlPoints<ControlVertex<Tally>> const in(sink, inputs);
+            (void)hs.stencil_row<Tally>({0}, in, 0);
+        });
+        EXPECT_EQ(flops_loop10(c), std::uint64_t(6 * n + 24));
+        EXPECT_EQ(c.mul, std::uint64_t(3 * inputs));
+    }
+}
+
+struct Built {
+    ControlMesh mesh;
+    std::unique_ptr<Topology> topology;
+    std::unique_ptr<PatchMesh> patches;
+    explicit Built(std::string const& name)
+    {
+        for (BuiltinModel const& m : builtin_models())
+            if (m.name == name) mesh = read_obj(m.obj, name).mesh;
+        topology = std::make_unique<Topology>(mesh);
+        patches = find_technique("gregory-stencil").build(*topology, {});
+    }
+};
+
+StageStatistics const& stage(DrawStatistics const& s, std::string const& name)
+{
+    for (StageStatistics const& x : s.stages)
+        if (x.stage == name) return x;
+    throw std::runtime_error("no stage " + name);
+}
+
+std::uint64_t fetched(StageStatistics const& s, std::string const& resource)
+{
+    for (FetchStatistics const& f : s.fetches)
+        if (f.resource == resource) return f.count;
+    return 0;
+}
+
+// Run-time counts of each patch kind's domain shader = the tally at each of its points.
+TEST(DomainShader, RunTimeCountsEqualTheTallySummedOverInvocations)
+{
+    std::set<std::string> kinds;
+    for (char const* name : {"jug", "spindle"}) {
+        Built const built(name);
+        for (int lanes : {4, 8, 16}) {
+            PassSettings settings;
+            settings.tess_factor = 5.3f;
+            settings.machine.lanes = lanes;
+            for (DrawPass const& pass : built.patches->passes(settings)) {
+                Cost expected;
+                auto const visit = [&](ShadedPatch const& p) {
+                    for (std::size_t i = 0; i < p.points->patch.points(); ++i) {
+                        double const u = double(p.points->u[i]), v = double(p.points->v[i]);
+                        Cost const c = pass.kind.name == "regular quad"   ? domain_cost<RegularQuadDomainShader>(u, v)
+                                       : pass.kind.name == "Gregory quad" ? domain_cost<GregoryQuadDomainShader>(u, v)
+                                                                          : domain_cost<GregoryTriangleDomainShader>(u, v);
+                        expected.flops += c.flops;
+                        expected.control_points += c.control_points;
+                        expected.patch_constants += c.patch_constants;
+                    }
+                };
+                DrawStatistics const s = draw(pass.pipeline, pass.call, nullptr, visit, ThreadPool(2));
+                StageStatistics const& ds = stage(s, "domain_shader");
+                EXPECT_EQ(ds.flops, expected.flops) << pass.kind.name << " lanes " << lanes;
+                EXPECT_EQ(fetched(ds, "control_points"), expected.control_points) << pass.kind.name;
+                EXPECT_EQ(fetched(ds, "patch_constants"), expected.patch_constants) << pass.kind.name;
+                kinds.insert(pass.kind.name);
+            }
+        }
+    }
+    EXPECT_EQ(kinds.size(), 3u) << "a patch kind was not drawn";
+}
+
+// The hull shader's: every row of every patch, 3 per non-zero weight.
+TEST(HullShader, RunTimeCountsEqualThreePerNonZeroWeight)
+{
+    for (char const* name : {"jug", "spindle"}) {
+        Built const built(name);
+        std::uint64_t expected = 0;
+        Neighbourhood n;
+        for (std::uint32_t f = 0; f < built.mesh.faces(); ++f) {
+            find_neighbourhood(*built.topology, f, n);
+            GregoryStencils const s = make_gregory_stencils(n, is_regular(*built.topology, f), {});
+            // Rows that run: control points, 4 an edge, one pair of tangents a corner.
+            std::vector<std::size_t> rows(std::size_t(s.control_points + 4 * n.sides));
+            std::iota(rows.begin(), rows.end(), std::size_t(0));
+            for (int i = 0; i < n.sides; ++i)
+                for (int k = 0; k < 2; ++k) rows.push_back(std::size_t(s.corner_row[i] + 2 * n.ring_shift[i] + k));
+            for (std::size_t r : rows)
+                for (double w : s.rows[r]) expected += 3 * (float(w) != 0);
+        }
+        for (int lanes : {4, 8, 16}) {
+            FrameSettings settings;
+            settings.machine.lanes = lanes;
+            DrawStatistics const s = visit_surface(*built.patches, settings, ThreadPool(2), [](auto const&, auto const&) {});
+            EXPECT_EQ(stage(s, "hull_shader").flops.mul, expected) << name << " lanes " << lanes;
+            EXPECT_EQ(stage(s, "hull_shader").flops.add, expected) << name;
+        }
+    }
+}
+
+} // namespace
+} // namespace tessemu

@@ -1,0 +1,246 @@
+// Control points and evaluation against golden data, through the templates that draw.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/gregory_stencils.h"
+#include "shaders_cpp/gregory/domain_shaders.h"
+#include "shaders_cpp/gregory/stencil_hull_shader.h"
+#include "tests/support/files.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <fstream>
+#include <numeric>
+
+namespace tessemu {
+namespace {
+
+using Json = nlohmann::json;
+
+ControlMesh mesh_from(Json const& j)
+{
+    ControlMesh m;
+    for (auto const& v : j["vertices"]) m.positions.emplace_back(v[0], v[1], v[2]);
+    for (auto const& f : j["faces"]) m.add_face(f.get<std::vector<std::uint32_t>>());
+    return m;
+}
+
+// A face's patch in scalar type F: the hull shader's stencil rows on the mesh's vertices, turned back so
+// that corner 0 is the face's first vertex.
+template <class F> struct Patch {
+    std::vector<F> points; // control points, three numbers each
+    double scale = 0;      // largest sum over the inputs of |weight| |coordinate|, for error bounds
+    double largest_point = 0;
+
+    ControlPoints<ControlVertex<F>> view() const
+    {
+        return {points.data(), int(points.size() / 3)};
+    }
+};
+
+template <class F, TessellatorDomain kDomain> Patch<F> patch_of(Topology const& topology, std::uint32_t face)
+{
+    Neighbourhood n;
+    find_neighbourhood(topology, face, n);
+    GregoryStencils const s = make_gregory_stencils(n, false, {});
+    int const N = n.sides;
+    std::vector<F> weights, input;
+    std::vector<std::uint32_t> masks, words;
+    std::vector<std::uint8_t> order(n.inputs.size());
+    Patch<F> out;
+    for (std::size_t i = 0; i < n.inputs.size(); ++i) {
+        for (auto const& row : s.rows) weights.push_back(F(row[i]));
+        for (int k = 0; k < 3; ++k) input.push_back(F(topology.mesh().positions[n.inputs[i]][k]));
+    }
+    for (auto const& row : s.rows) {
+        std::uint32_t mask = 0;
+        double sum[3] = {};
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            if (F(row[i]) != 0) mask |= 1u << i;
+            for (std::size_t k = 0; k < 3; ++k) sum[k] += std::abs(row[i] * double(input[3 * i + k]));
+        }
+        masks.push_back(mask);
+        for (double x : sum) out.scale = std::max(out.scale, x);
+    }
+    words = {0, 0, std::uint32_t(s.rows.size()), 0, 0, 0, 0, 0};
+    std::iota(order.begin(), order.end(), std::uint8_t(0));
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return n.inputs[a] < n.inputs[b]; });
+    StencilHullShader<kDomain, F> hs;
+    hs.points = s.control_points;
+    hs.weights = {weights, 0, "weights"};
+    hs.zero_masks = {masks, 1, "masks"};
+    hs.patches = {words, 2, "words"};
+    hs.order = {order, 3, "order"};
+    ControlPoints<ControlVertex<F>> const in(input.data(), int(n.inputs.size()));
+    out.points.resize(std::size_t(s.control_points) * 3);
+    for (int id = 0; id < s.control_points; ++id) {
+        ControlVertex<F> const p = hs.template control_point<F>({0}, in, id);
+        int const kind = id / N, corner = (id % N + n.rotation) % N;
+        F* const at = out.points.data() + 3 * (kind * N + corner);
+        at[0] = p.position.x, at[1] = p.position.y, at[2] = p.position.z;
+        for (int k = 0; k < 3; ++k) out.largest_point = std::max(out.largest_point, std::abs(double(at[k])));
+    }
+    return out;
+}
+
+double error(float3<float> const& p, Json const& expected, double scale = 1)
+{
+    return std::max({std::abs(double(p.x) * scale - double(expected[0])),
+                     std::abs(double(p.y) * scale - double(expected[1])),
+                     std::abs(double(p.z) * scale - double(expected[2]))});
+}
+double error(float3<double> const& p, Json const& expected, double scale = 1)
+{
+    return std::max({std::abs(p.x * scale - double(expected[0])), std::abs(p.y * scale - double(expected[1])),
+                     std::abs(p.z * scale - double(expected[2]))});
+}
+
+// Error bounds. double: 1e-12, as the golden data were compared. float, with u = 2^-24: a stencil sum of
+// n <= 32 terms rounds each weight, product and partial sum, so it errs by at most (n + 2) u sum|w||x|.
+// Evaluation is a convex combination of control points through at most 24 roundings on any path (blend
+// weights 4, blend 2, basis 4, row 4, column 4, and 6 spare); a derivative multiplies that by the sum of
+// the absolute derivative weights, 6 for a cubic, 8 for a quartic.
+template <class F> double point_bound(Patch<F> const& p)
+{
+    return sizeof(F) == 8 ? 1e-12 : 34 * std::ldexp(1, -24) * p.scale;
+}
+template <class F> double evaluation_bound(Patch<F> const& p)
+{
+    return sizeof(F) == 8 ? 1e-12 : point_bound(p) + 24 * std::ldexp(1, -24) * p.largest_point;
+}
+
+template <class F> class GregoryOn : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(GregoryOn, Scalars);
+
+std::vector<std::string> golden_meshes()
+{
+    return {"torus_regular", "cube",      "l_shape",   "trapezohedron6", "trapezohedron9", "tetrahedron", "icosahedron",
+            "bipyramid8",    "antiprism7", "prism3",   "house",          "open_grid",      "open_mixed",  "open_fan5"};
+}
+
+template <class F, TessellatorDomain kDomain>
+void check_face(Topology const& topology, Json const& expected, std::string const& mesh, bool true_normals)
+{
+    constexpr int N = kDomain == TessellatorDomain::Quad ? 4 : 3;
+    std::uint32_t const face = expected["face"];
+    Patch<F> const patch = patch_of<F, kDomain>(topology, face);
+    char const* kinds[] = {"p", "e_plus", "e_minus", "f_plus", "f_minus"};
+    for (int kind = 0; kind < 5; ++kind)
+        for (int i = 0; i < N; ++i) {
+            F const* const c = patch.points.data() + 3 * (kind * N + i);
+            float3<F> const p(c[0], c[1], c[2]);
+            ASSERT_LE(error(p, expected[kinds[kind]][std::size_t(i)]), point_bound(patch))
+                << mesh << " face " << face << " " << kinds[kind] << i;
+        }
+    double const bound = evaluation_bound(patch);
+    for (auto const& e : expected["eval"]) {
+        auto const& at = e["at"];
+        TangentFrame<F> s;
+        double derivative_scale = 1, weights = 6;
+        if constexpr (N == 4) {
+            s = gregory_quad<F>(patch.view(), F(at[0]), F(at[1]), true_normals);
+        } else {
+            s = gregory_triangle<F>(patch.view(), F(at[0]), F(at[1]), F(at[2]), true_normals);
+            derivative_scale = 4, weights = 8;
+        }
+        ASSERT_LE(error(s.position, e["position"]), bound) << mesh << " face " << face << " at " << at;
+        if (!true_normals) {
+            ASSERT_LE(error(s.du, e["du"], derivative_scale), weights * bound) << mesh << " face " << face << " " << at;
+            ASSERT_LE(error(s.dv, e["dv"], derivative_scale), weights * bound) << mesh << " face " << face << " " << at;
+        } else if (e.contains("true_normal")) {
+            float3<F> const n = normalize(cross(s.du, s.dv));
+            // To first order a unit normal errs by |d(du x dv)| / |du x dv|. The dF terms add at most four
+            // times 9 uv/(u+v)^2 v 2 <= 4.5 to the derivative weights. sqrt(3): components to length; 4 ulp
+            // for cross and normalize.
+            double const delta = std::sqrt(3.0) * (weights + 18) * bound / derivative_scale;
+            double const length_u = std::sqrt(double(dot(s.du, s.du))), length_v = std::sqrt(double(dot(s.dv, s.dv)));
+            float3<F> const c = cross(s.du, s.dv);
+            double const normal_bound =
+                delta * (length_u + length_v) / std::sqrt(double(dot(c, c))) + 4 * std::ldexp(1, -24);
+            ASSERT_LE(error(n, e["true_normal"]), normal_bound) << mesh << " face " << face << " " << at;
+        }
+    }
+}
+
+template <class F> void check_all(bool true_normals)
+{
+    std::size_t faces = 0;
+    for (std::string const& name : golden_meshes()) {
+        Json const j = Json::parse(test::read_text(test::golden("loop09/" + name + ".json")));
+        ControlMesh const mesh = mesh_from(j);
+        Topology const topology(mesh);
+        for (auto const& expected : j["gregory"]) {
+            if (mesh.face(expected["face"]).size() == 4)
+                check_face<F, TessellatorDomain::Quad>(topology, expected, name, true_normals);
+            else
+                check_face<F, TessellatorDomain::Tri>(topology, expected, name, true_normals);
+            if (testing::Test::HasFatalFailure()) return;
+            ++faces;
+        }
+    }
+    EXPECT_GT(faces, 150u);
+}
+
+TYPED_TEST(GregoryOn, ControlPointsPointsAndDerivativesAgreeWithGoldenData) { check_all<TypeParam>(false); }
+TYPED_TEST(GregoryOn, TrueNormalsAgreeWithGoldenData) { check_all<TypeParam>(true); }
+
+TEST(GregoryStencils, AgreeWithGoldenStencilsAndSumToOne)
+{
+    for (char const* name : {"house", "l_shape", "open_mixed"}) {
+        Json const j = Json::parse(test::read_text(test::golden(std::string("loop09/") + name + ".json")));
+        ControlMesh const mesh = mesh_from(j);
+        Topology const topology(mesh);
+        for (auto const& g : j["gregory_stencils"]) {
+            std::uint32_t const face = g["face"];
+            Neighbourhood n;
+            find_neighbourhood(topology, face, n);
+            GregoryStencils const s = make_gregory_stencils(n, false, {});
+            auto const inputs = g["inputs"].get<std::vector<std::uint32_t>>();
+            EXPECT_EQ(inputs, topology.two_ring(face));
+            for (int i = 0; i < n.sides; ++i)
+                for (int kind = 0; kind < 5; ++kind) {
+                    auto const& expected = g["weights"][std::size_t((i + n.rotation) % n.sides * 5 + kind)];
+                    auto const& row = s.rows[std::size_t(kind * n.sides + i)];
+                    double sum = 0;
+                    for (std::size_t k = 0; k < inputs.size(); ++k) {
+                        auto const at = std::find(n.inputs.begin(), n.inputs.end(), inputs[k]) - n.inputs.begin();
+                        EXPECT_NEAR(row[std::size_t(at)], double(expected[k]), 1e-12) << name << " face " << face;
+                        sum += row[std::size_t(at)];
+                    }
+                    EXPECT_NEAR(sum, 1, 1e-14);
+                }
+        }
+    }
+}
+
+// Regular faces are the uniform bicubic B-spline: M P M^T (sheet section 7).
+TEST(GregoryStencils, RegularFaceIsTheBSpline)
+{
+    Json const j = Json::parse(test::read_text(test::golden("loop09/torus_regular.json")));
+    ControlMesh const mesh = mesh_from(j);
+    Topology const topology(mesh);
+    ASSERT_TRUE(is_regular(topology, 0));
+    Neighbourhood n;
+    find_neighbourhood(topology, 0, n);
+    GregoryStencils const regular = make_gregory_stencils(n, true, {});
+    ASSERT_EQ(regular.control_points, 16);
+    // f is (4 v + 2 d + 2 d' + x) / 9
+    auto const& f0 = regular.rows[12];
+    std::vector<double> sorted = f0;
+    std::sort(sorted.rbegin(), sorted.rend());
+    EXPECT_NEAR(sorted[0], 4.0 / 9, 1e-15);
+    EXPECT_NEAR(sorted[1], 2.0 / 9, 1e-15);
+    EXPECT_NEAR(sorted[2], 2.0 / 9, 1e-15);
+    EXPECT_NEAR(sorted[3], 1.0 / 9, 1e-15);
+    for (std::size_t i = 4; i < sorted.size(); ++i) EXPECT_NEAR(sorted[i], 0, 1e-15);
+    // The Gregory patch of the same face has f+ = f-.
+    GregoryStencils const gregory = make_gregory_stencils(n, false, {});
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t k = 0; k < n.inputs.size(); ++k)
+            EXPECT_NEAR(gregory.rows[12 + i][k], gregory.rows[16 + i][k], 1e-15);
+}
+
+} // namespace
+} // namespace tessemu
