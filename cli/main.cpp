@@ -525,6 +525,12 @@ int main(int argc, char** argv)
         app.parse(argc, argv);
     } catch (CLI::ParseError const& e) {
         if (e.get_exit_code() == 0) return app.exit(e);
+        if (app.get_subcommands().empty()) { // CLI11 does not say which word it did not know
+            std::string verbs;
+            for (CLI::App const* v : app.get_subcommands({})) verbs += " " + v->get_name();
+            fmt::print(stderr, "tessemu: '{}' is not a verb; there are{}\n", argv[1], verbs);
+            return 2;
+        }
         fmt::print(stderr, "tessemu: {}\n", e.what());
         return 2;
     }

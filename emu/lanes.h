@@ -142,13 +142,13 @@ template <int N> struct Lanes {
     {
         Lanes const equal = Raw(Bits(a.raw) | Bits(b.raw));
         return select(a < b, a, select(b < a, b, select(a == b, equal, select(a == a, a, b)))) +
-               Lanes(-0.0f);
+               Lanes(detail::minus_zero);
     }
     friend Lanes max(Lanes a, Lanes b)
     {
         Lanes const equal = Raw(Bits(a.raw) & Bits(b.raw));
         return select(a > b, a, select(b > a, b, select(a == b, equal, select(a == a, a, b)))) +
-               Lanes(-0.0f);
+               Lanes(detail::minus_zero);
     }
     friend Lanes mad(Lanes a, Lanes b, Lanes c)
     {

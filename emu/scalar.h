@@ -60,6 +60,10 @@ constexpr bool any(bool mask) { return mask; }
 constexpr bool all(bool mask) { return mask; }
 
 namespace detail {
+/// -0, which the compiler must not know: x + -0 is x but for the flush of a denormal x, and compilers
+/// drop the addition of a constant -0.
+constinit inline float minus_zero = -0.0f;
+
 template <class F> using bits_of = std::conditional_t<sizeof(F) == 4, std::uint32_t, std::uint64_t>;
 }
 
@@ -70,7 +74,7 @@ template <std::floating_point F> F min(F a, F b)
     using Bits = detail::bits_of<F>;
     F const equal = std::bit_cast<F>(std::bit_cast<Bits>(a) | std::bit_cast<Bits>(b));
     F const r = a < b ? a : b < a ? b : a == b ? equal : a == a ? a : b;
-    return r + F(-0.0);
+    return r + F(detail::minus_zero);
 }
 
 /// HLSL max, see min.
@@ -79,7 +83,7 @@ template <std::floating_point F> F max(F a, F b)
     using Bits = detail::bits_of<F>;
     F const equal = std::bit_cast<F>(std::bit_cast<Bits>(a) & std::bit_cast<Bits>(b));
     F const r = a > b ? a : b > a ? b : a == b ? equal : a == a ? a : b;
-    return r + F(-0.0);
+    return r + F(detail::minus_zero);
 }
 
 /// a * b + c with one rounding, by the instruction where the processor has it and exactly in double

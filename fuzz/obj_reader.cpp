@@ -1,0 +1,23 @@
+// libFuzzer target: any bytes either read as a mesh or are refused with an Error; what is read goes on
+// through topology, the Catmull-Clark step and the patch tables.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "emu/error.h"
+#include "io/obj_reader.h"
+#include "pipeline/technique.h"
+
+#include <cstddef>
+#include <cstdint>
+
+extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size)
+{
+    using namespace tessemu;
+    try {
+        ObjFile file = read_obj({reinterpret_cast<char const*>(data), size}, "fuzz.obj");
+        Technique const& technique = find_technique("gregory-stencil");
+        PreparedMesh const mesh = prepare_mesh(std::move(file.mesh), technique);
+        (void)technique.build(*mesh.topology, {});
+    } catch (Error const&) {
+    }
+    return 0;
+}

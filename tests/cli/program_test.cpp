@@ -1,0 +1,248 @@
+// The program as its users run it: exit statuses, messages, files, JSON.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/files.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+
+#include <sys/wait.h>
+
+namespace tessemu {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+struct Result {
+    int status;
+    std::string out, err;
+};
+
+fs::path scratch()
+{
+    static fs::path const folder = [] {
+        fs::path const p = fs::temp_directory_path() / ("tessemu_cli_" + std::to_string(getpid()));
+        fs::create_directories(p);
+        return p;
+    }();
+    return folder;
+}
+
+Result run(std::string const& arguments)
+{
+    fs::path const out = scratch() / "stdout", err = scratch() / "stderr";
+    std::string const command = std::string(TESSEMU_PROGRAM) + " " + arguments + " >" + out.string() + " 2>" +
+                                err.string() + " </dev/null";
+    int const status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::read_text(out), test::read_text(err)};
+}
+
+Json draw_json(std::string const& arguments)
+{
+    Result const r = run("draw " + arguments + " --json -");
+    EXPECT_EQ(r.status, 0) << r.err;
+    return Json::parse(r.out);
+}
+
+TEST(Program, HelpAndVersionExitZeroOnEachVerb)
+{
+    EXPECT_EQ(run("--help").status, 0);
+    EXPECT_EQ(run("--version").status, 0);
+    for (char const* verb : {"draw", "export", "tessellate", "info", "schemes", "models"}) {
+        Result const help = run(std::string(verb) + " --help");
+        EXPECT_EQ(help.status, 0) << verb;
+        EXPECT_NE(help.out.find("Examples:"), std::string::npos) << verb;
+        Result const version = run(std::string(verb) + " --version");
+        EXPECT_EQ(version.status, 0) << verb;
+        EXPECT_EQ(version.out.find("tessemu "), 0u) << verb;
+    }
+}
+
+TEST(Program, AVerbWithoutItsArgumentPrintsHelpAndExitsTwo)
+{
+    for (char const* verb : {"", "draw", "export", "tessellate", "info"}) {
+        Result const r = run(verb);
+        EXPECT_EQ(r.status, 2) << verb;
+        EXPECT_TRUE(r.out.empty()) << verb;
+        EXPECT_NE(r.err.find("Usage:"), std::string::npos) << verb;
+    }
+}
+
+TEST(Program, BadUsageExitsTwoWithOneLineThatNamesTheValue)
+{
+    for (auto const& [arguments, word] : std::vector<std::pair<std::string, std::string>>{
+             {"draw nowhere.obj", "nowhere.obj"},
+             {"draw jug --tess 65", "65"},
+             {"draw jug --tess 0", "--tess"},
+             {"draw jug --tess nan", "--tess"},
+             {"draw jug --scheme bezier", "gregory-stencil"},
+             {"draw jug --size 0x4", "--size"},
+             {"draw jug --size 99999x4", "16384"},
+             {"draw jug --view wire", "wire"},
+             {"draw jug --lanes 5", "lanes"},
+             {"draw jug --camera eye=1,2", "--camera"},
+             {"draw jug --contraction mixed:x", "mixed"},
+             {"draw jug --vertex-cache fifo:0", "fifo:0"},
+             {"draw jug --set sigma=2", "sigma"},
+             {"draw jug -o picture.bmp", ".bmp"},
+             {"draw jug -o missing/folder/a.png", "missing/folder"},
+             {"draw jug -j -1", "-1"},
+             {"draw jug --no-such-option", "--no-such-option"},
+             {"frobnicate", "frobnicate"},
+             {"export jug -o mesh.stl", ".stl"},
+             {"tessellate --factors 1 2 3", "6 are needed"},
+             {"tessellate --domain cube --factors 1 2 3", "cube"}}) {
+        Result const r = run(arguments);
+        EXPECT_EQ(r.status, 2) << arguments;
+        EXPECT_NE(r.err.find(word), std::string::npos) << arguments << ": " << r.err;
+        EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << arguments << ": " << r.err;
+        EXPECT_TRUE(r.out.empty()) << arguments;
+    }
+}
+
+TEST(Program, DrawWritesPictureTableAndJson)
+{
+    fs::path const picture = scratch() / "jug.png", json = scratch() / "jug.json";
+    Result const r = run("draw jug --size 64x48 -o " + picture.string() + " --json " + json.string());
+    ASSERT_EQ(r.status, 0) << r.err;
+    EXPECT_TRUE(r.err.empty()) << r.err;
+    EXPECT_NE(r.out.find("domain_shader"), std::string::npos);
+    EXPECT_GT(fs::file_size(picture), 500u);
+    Json const j = Json::parse(test::read_text(json));
+    EXPECT_EQ(j["schema"], "tessemu.draw/1");
+    EXPECT_EQ(j["hash"].get<std::string>().size(), 64u);
+    EXPECT_EQ(j["inputs"][0]["name"], "jug");
+    auto const& c = j["counters"];
+    EXPECT_EQ(c["HSInvocations"], c["IAPrimitives"]);
+    EXPECT_EQ(c["HSControlPointInvocations"].get<int>() > 15 * c["HSInvocations"].get<int>(), true);
+    EXPECT_EQ(j["stages"]["domain_shader"]["invocations"], c["DSInvocations"]);
+    EXPECT_EQ(j.dump().find(scratch().string()), std::string::npos) << "a path in the result";
+}
+
+TEST(Program, TheHashDoesNotDependOnThreadsLanesOrWhereTheModelLies)
+{
+    fs::path const copy = scratch() / "sub";
+    fs::create_directories(copy);
+    std::ofstream(copy / "star.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nf 1 2 3 4\nt oddity 0/0/0\n";
+    fs::copy_file(copy / "star.obj", scratch() / "star.obj", fs::copy_options::overwrite_existing);
+    Json const a = draw_json((copy / "star.obj").string() + " --size 80x60 --tess 3.7 -j 1 --lanes 4");
+    Json const b = draw_json((scratch() / "star.obj").string() + " --size 80x60 --tess 3.7 -j 3 --lanes 16");
+    EXPECT_EQ(a["hash"], b["hash"]);
+    EXPECT_EQ(a["warnings"], b["warnings"]);
+    EXPECT_EQ(a["warnings"].size(), 1u);
+    Json const c = draw_json((copy / "star.obj").string() + " --size 80x60 --tess 3.8");
+    EXPECT_NE(a["hash"], c["hash"]);
+}
+
+TEST(Program, TheVertexCacheChangesCountsOnly)
+{
+    Json const none = draw_json("jug --size 64x64 --vertex-cache none");
+    Json const all = draw_json("jug --size 64x64 --vertex-cache infinite");
+    EXPECT_EQ(none["counters"]["VSInvocations"], none["counters"]["IAVertices"]);
+    EXPECT_LT(all["counters"]["VSInvocations"], none["counters"]["VSInvocations"]);
+    EXPECT_EQ(none["counters"]["PSInvocations"], all["counters"]["PSInvocations"]);
+}
+
+TEST(Program, TessellateBatchAnswersTheGoldenCases)
+{
+    fs::path const golden = TESSEMU_GOLDEN_BATCH;
+    Result const r = run("tessellate --batch " + (golden / "cases.txt").string());
+    ASSERT_EQ(r.status, 0) << r.err;
+    EXPECT_EQ(r.out, test::read_text(golden / "expected.txt"));
+}
+
+TEST(Program, AMalformedBatchLineIsNamed)
+{
+    fs::path const batch = scratch() / "batch.txt";
+    for (char const* bad : {"quad integer", "quad integer triangle_cw 3f800000", "cube integer point 0",
+                            "tri integer point 3f800000 3f800000 3f800000 zzzzzzzz", ""}) {
+        std::ofstream(batch) << "isoline integer line 3f800000 3f800000\n" << bad << "\n";
+        Result const r = run("tessellate --batch " + batch.string());
+        EXPECT_EQ(r.status, 2) << bad;
+        EXPECT_NE(r.err.find("batch.txt:2:"), std::string::npos) << r.err;
+        EXPECT_TRUE(r.out.empty()) << bad;
+    }
+}
+
+TEST(Program, TessellateGivesOnePatchAsJson)
+{
+    Result const r = run("tessellate --domain quad --partitioning integer --factors 1 1 1 1 1 1");
+    ASSERT_EQ(r.status, 0) << r.err;
+    Json const j = Json::parse(r.out);
+    EXPECT_EQ(j["u"], (std::vector<int>{0, 65536, 65536, 0}));
+    EXPECT_EQ(j["indices"], (std::vector<int>{0, 1, 3, 1, 2, 3}));
+}
+
+TEST(Program, InfoSchemesAndModelsList)
+{
+    Result const info = run("info jug");
+    EXPECT_EQ(info.status, 0);
+    EXPECT_NE(info.out.find("Gregory triangle"), std::string::npos);
+    EXPECT_NE(run("schemes").out.find("gregory-stencil"), std::string::npos);
+    EXPECT_NE(run("models").out.find("jug"), std::string::npos);
+    EXPECT_EQ(Json::parse(run("info spindle --json -").out)["mesh"]["boundary_edges"], 0);
+}
+
+TEST(Program, ExportWeldsAndNamesWhatItCannotHonour)
+{
+    fs::path const cage = scratch() / "creased.obj";
+    std::ofstream(cage) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nt crease 2/1/0 0 1 3\n";
+    Result const r = run("export " + cage.string() + " --tess 2 --weld -o " + (scratch() / "c.obj").string());
+    EXPECT_EQ(r.status, 0);
+    EXPECT_NE(r.err.find("crease"), std::string::npos);
+}
+
+// expected.tsv: file, outcome, class, check, ...
+TEST(Program, BadFilesBehaveAsTheTableSays)
+{
+    TESSEMU_NEEDS_SHARED("models/bad/expected.tsv");
+    std::istringstream table(test::read_text(test::shared("models/bad/expected.tsv")));
+    std::string line;
+    std::size_t files = 0;
+    while (std::getline(table, line)) {
+        if (line.starts_with("#") || line.starts_with("file\t")) continue;
+        std::istringstream row(line);
+        std::string file, outcome, group, check;
+        std::getline(row, file, '\t'), std::getline(row, outcome, '\t'), std::getline(row, group, '\t');
+        std::getline(row, check, '\t');
+        std::string const path = test::shared("models/bad/" + file).string();
+        fs::path const mesh = scratch() / "bad.obj";
+        fs::remove(mesh);
+        Result const r = run("export " + path + " --tess 3 -o " + mesh.string());
+        ++files;
+        ASSERT_TRUE(r.status == 0 || r.status == 2) << file << " " << r.status;
+        bool const rejected = r.status == 2;
+        if (outcome == "accept") {
+            EXPECT_FALSE(rejected) << file << ": " << r.err;
+        } else if (outcome == "reject") {
+            EXPECT_TRUE(rejected) << file;
+        } else if (outcome == "not-silent") {
+            EXPECT_TRUE(rejected || r.err.find("warning:") != std::string::npos) << file;
+        }
+        if (rejected) {
+            EXPECT_FALSE(fs::exists(mesh)) << file;
+            EXPECT_NE(r.err.find(file), std::string::npos) << file << ": " << r.err;
+        } else {
+            std::string const text = test::read_text(mesh);
+            EXPECT_EQ(text.find("nan"), std::string::npos) << file;
+            EXPECT_EQ(text.find("inf"), std::string::npos) << file;
+            if (check.starts_with("V=")) {
+                int v = 0, f = 0;
+                std::sscanf(check.c_str(), "V=%d F=%d", &v, &f);
+                Json const info = Json::parse(run("info " + path + " --json -").out)["mesh"];
+                EXPECT_EQ(info["vertices"], v) << file;
+                EXPECT_EQ(info["faces"], f) << file;
+            }
+        }
+    }
+    EXPECT_EQ(files, 30u);
+}
+
+} // namespace
+} // namespace tessemu

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/image_writer.h"
+
+#include "io/atomic_file.h"
+#include "tests/support/files.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace tessemu {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path scratch()
+{
+    fs::path const p = fs::temp_directory_path() / "tessemu_image_test";
+    fs::remove_all(p);
+    fs::create_directories(p);
+    return p;
+}
+
+TEST(ImageWriter, WritesPngAndExrAndLeavesNothingElse)
+{
+    fs::path const folder = scratch();
+    RenderTarget target(5, 3, {0.25f, 0.5f, 1.0f, 1.0f});
+    write_image(target, folder / "a.png");
+    write_image(target, folder / "a.exr");
+    std::size_t files = 0;
+    for (auto const& entry : fs::directory_iterator(folder)) {
+        ++files;
+        EXPECT_GT(entry.file_size(), 0u);
+    }
+    EXPECT_EQ(files, 2u);
+    EXPECT_EQ(test::read_text(folder / "a.png").substr(1, 3), "PNG");
+}
+
+TEST(ImageWriter, RefusesOtherExtensionsAndMissingFolders)
+{
+    RenderTarget const target(4, 4);
+    EXPECT_THROW(write_image(target, scratch() / "a.bmp"), WriteError);
+    EXPECT_THROW(write_image(target, scratch() / "missing" / "a.png"), WriteError);
+}
+
+TEST(AtomicFile, AFailedWriteKeepsTheOldFile)
+{
+    fs::path const folder = scratch();
+    write_file(folder / "a.txt", "old");
+    EXPECT_THROW(write_atomically(folder / "a.txt",
+                                  [](fs::path const& temporary) {
+                                      write_file(temporary, "half");
+                                      throw Error("no more");
+                                  }),
+                 Error);
+    EXPECT_EQ(test::read_text(folder / "a.txt"), "old");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
+}
+
+TEST(RenderTarget, NamesItsLimit)
+{
+    try {
+        RenderTarget const target(16385, 4);
+        FAIL();
+    } catch (LimitError const& e) {
+        EXPECT_EQ(e.value, 16385u);
+        EXPECT_EQ(e.limit, 16384u);
+    }
+    EXPECT_THROW(RenderTarget(0, 4), Error);
+}
+
+} // namespace
+} // namespace tessemu

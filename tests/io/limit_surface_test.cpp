@@ -1,0 +1,100 @@
+// Patch corners lie on the Catmull-Clark limit surface.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "io/mesh_writer.h"
+#include "io/model.h"
+#include "tests/support/files.h"
+
+#include <gtest/gtest.h>
+
+#include <zlib.h>
+
+#include <cmath>
+#include <map>
+#include <sstream>
+
+namespace tessemu {
+namespace {
+
+struct LimitCorners {
+    double diagonal = 0;
+    std::map<std::pair<std::uint32_t, int>, std::array<double, 3>> at; // (face, corner)
+};
+
+LimitCorners read_limit(std::filesystem::path const& path, ControlMesh const& mesh)
+{
+    std::string text;
+    gzFile const file = gzopen(path.c_str(), "rb");
+    char block[1 << 16];
+    for (int n; (n = gzread(file, block, sizeof block)) > 0;) text.append(block, std::size_t(n));
+    gzclose(file);
+    LimitCorners out;
+    std::istringstream in(text);
+    std::string line;
+    std::getline(in, line);
+    out.diagonal = std::stod(line.substr(line.find("bbox_diag=") + 10));
+    std::getline(in, line);
+    while (std::getline(in, line)) {
+        std::istringstream row(line);
+        double c[7];
+        for (double& x : c) {
+            row >> x;
+            row.ignore();
+        }
+        auto const face = std::uint32_t(c[0]);
+        auto const is = [](double x, double y) { return std::abs(x - y) < 1e-9; };
+        int corner = -1;
+        if (mesh.face(face).size() == 4) {
+            if (is(c[2], 0) && is(c[3], 0)) corner = 0;
+            if (is(c[2], 1) && is(c[3], 0)) corner = 1;
+            if (is(c[2], 1) && is(c[3], 1)) corner = 2;
+            if (is(c[2], 0) && is(c[3], 1)) corner = 3;
+        } else if (is(c[2], 0) && is(c[3], 0)) {
+            corner = int(c[1]); // sub-face i starts at vertex i
+        }
+        if (corner >= 0) out.at[{face, corner}] = {c[4], c[5], c[6]};
+    }
+    return out;
+}
+
+class LimitSurfaceOn : public testing::TestWithParam<char const*> {};
+
+TEST_P(LimitSurfaceOn, ExportedPatchCornersAgreeToOneMillionthOfTheDiagonal)
+{
+    std::string const name = GetParam();
+    TESSEMU_NEEDS_SHARED("models/" + name + ".obj");
+    TESSEMU_NEEDS_SHARED("golden/limit/" + name + ".csv.gz");
+    Technique const& technique = find_technique("gregory-stencil");
+    PreparedMesh const m =
+        prepare_mesh(load_model(test::shared("models/" + name + ".obj").string()).mesh, technique);
+    auto const patches = technique.build(*m.topology, {});
+    LimitCorners const limit = read_limit(test::shared("golden/limit/" + name + ".csv.gz"), *m.mesh);
+    std::size_t compared = 0;
+    double worst = 0;
+    visit_surface(*patches, {}, ThreadPool(), [&](DrawPass const& pass, ShadedPatch const& p) {
+        PatchOrigin const& origin = pass.patches[p.primitive_id];
+        for (std::size_t i = 0; i < p.points->patch.points(); ++i) {
+            FacePoint const at = domain_to_face(origin, p.points->u[i], p.points->v[i]);
+            int corner;
+            if (origin.sides == 4)
+                corner = at.v == 0 ? (at.u == 0 ? 0 : 1) : (at.u == 1 ? 2 : 3);
+            else
+                corner = at.u == 1 ? 0 : at.v == 1 ? 1 : 2;
+            auto const it = limit.at.find({origin.face, corner});
+            ASSERT_NE(it, limit.at.end());
+            double d2 = 0;
+            for (std::size_t k = 0; k < 3; ++k)
+                d2 += std::pow(double(p.outputs[k * p.stride + i]) - it->second[k], 2);
+            worst = std::max(worst, std::sqrt(d2) / limit.diagonal);
+            ++compared;
+        }
+    });
+    EXPECT_EQ(compared, limit.at.size());
+    EXPECT_LE(worst, 1e-6);
+    std::printf("%s: %zu corners, worst distance %.2g of the diagonal\n", name.c_str(), compared, worst);
+}
+INSTANTIATE_TEST_SUITE_P(Models, LimitSurfaceOn,
+                         testing::Values("bigguy", "monsterfrog", "suzanne", "chamfer_cube", "catmark_torus"));
+
+} // namespace
+} // namespace tessemu

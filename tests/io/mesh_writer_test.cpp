@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/mesh_writer.h"
+
+#include "io/atomic_file.h"
+#include "io/model.h"
+#include "tests/support/files.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+#include <sstream>
+
+namespace tessemu {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path scratch()
+{
+    fs::path const p = fs::temp_directory_path() / "tessemu_mesh_test";
+    fs::create_directories(p);
+    return p;
+}
+
+struct Exported {
+    std::uint64_t vertices, triangles;
+};
+
+Exported export_model(std::string const& model, fs::path const& path, bool weld, float tess)
+{
+    Technique const& technique = find_technique("gregory-stencil");
+    PreparedMesh const m = prepare_mesh(load_model(model).mesh, technique);
+    auto const patches = technique.build(*m.topology, {});
+    MeshWriter writer(path, weld);
+    FrameSettings s;
+    s.tess_factor = tess;
+    visit_surface(*patches, s, ThreadPool(2),
+                  [&](DrawPass const& pass, ShadedPatch const& p) { writer.add(pass, p); });
+    writer.finish();
+    return {writer.vertices(), writer.triangles()};
+}
+
+// A welded export of a closed mesh is a closed manifold: each edge has two triangles, V - E + F = 2.
+TEST(MeshWriter, AWeldedClosedMeshHasEulerCharacteristicTwo)
+{
+    fs::path const path = scratch() / "spindle.obj";
+    for (float tess : {1.0f, 3.0f, 6.4f}) {
+        Exported const e = export_model("spindle", path, true, tess);
+        std::map<std::pair<long, long>, int> edges;
+        std::istringstream in(test::read_text(path));
+        std::string line;
+        std::uint64_t faces = 0;
+        while (std::getline(in, line)) {
+            if (!line.starts_with("f ")) continue;
+            ++faces;
+            std::istringstream words(line.substr(2));
+            long v[3];
+            for (long& x : v) {
+                words >> x;
+                words.ignore(100, ' ');
+            }
+            for (int i = 0; i < 3; ++i) ++edges[std::minmax(v[i], v[(i + 1) % 3])];
+        }
+        ASSERT_EQ(faces, e.triangles);
+        for (auto const& [edge, n] : edges) ASSERT_EQ(n, 2) << edge.first << "-" << edge.second << " tess " << tess;
+        EXPECT_EQ(long(e.vertices) - long(edges.size()) + long(faces), 2);
+    }
+}
+
+TEST(MeshWriter, PlyAndObjHoldTheSameNumbers)
+{
+    Exported const ply = export_model("jug", scratch() / "jug.ply", false, 4);
+    Exported const obj = export_model("jug", scratch() / "jug.obj", false, 4);
+    EXPECT_EQ(ply.vertices, obj.vertices);
+    EXPECT_EQ(ply.triangles, obj.triangles);
+    std::string const text = test::read_text(scratch() / "jug.ply");
+    std::size_t const data = text.find("end_header\n") + 11;
+    EXPECT_EQ(text.size() - data, ply.vertices * 36 + ply.triangles * 13);
+    std::string const o = test::read_text(scratch() / "jug.obj");
+    float first[3];
+    std::memcpy(first, text.data() + data, sizeof first);
+    float x = 0, y = 0, z = 0;
+    ASSERT_EQ(std::sscanf(o.c_str(), "v %f %f %f", &x, &y, &z), 3);
+    EXPECT_EQ(x, first[0]);
+    EXPECT_EQ(y, first[1]);
+    EXPECT_EQ(z, first[2]);
+}
+
+TEST(MeshWriter, LeavesNothingBehindUnlessFinished)
+{
+    fs::path const path = scratch() / "never.obj";
+    fs::remove(path);
+    std::size_t const before = std::size_t(std::distance(fs::directory_iterator(scratch()), fs::directory_iterator()));
+    {
+        MeshWriter const writer(path, false);
+    }
+    EXPECT_EQ(std::size_t(std::distance(fs::directory_iterator(scratch()), fs::directory_iterator())), before);
+    EXPECT_THROW(MeshWriter(scratch() / "a.stl", false), WriteError);
+    EXPECT_THROW(MeshWriter(scratch() / "missing" / "a.obj", false), WriteError);
+}
+
+TEST(DomainToFace, TurnsCornersBackExactly)
+{
+    float const corners[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    for (std::uint8_t r = 0; r < 4; ++r)
+        for (int i = 0; i < 4; ++i) {
+            FacePoint const p = domain_to_face({0, r, 4}, corners[i][0], corners[i][1]);
+            EXPECT_EQ(p.u, corners[(i + r) % 4][0]);
+            EXPECT_EQ(p.v, corners[(i + r) % 4][1]);
+        }
+    for (std::uint8_t r = 0; r < 3; ++r) {
+        FacePoint const p = domain_to_face({0, r, 3}, 1, 0); // the patch's corner 0
+        EXPECT_EQ(p.u, r == 0 ? 1 : 0);
+        EXPECT_EQ(p.v, r == 1 ? 1 : 0);
+    }
+}
+
+} // namespace
+} // namespace tessemu

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/connectivity.h"
+
+#include "io/model.h"
+#include "pipeline/gregory_stencils.h"
+#include "pipeline/technique.h"
+#include "tests/support/files.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+namespace tessemu {
+namespace {
+
+TEST(Connectivity, InputsAreTheTwoRing)
+{
+    for (char const* name : {"jug", "spindle", "saddle_star"}) {
+        ControlMesh const m = load_model(name).mesh;
+        Topology const t(m);
+        Neighbourhood n;
+        for (std::uint32_t f = 0; f < m.faces(); ++f) {
+            find_neighbourhood(t, f, n);
+            EXPECT_EQ(std::set<std::uint32_t>(n.inputs.begin(), n.inputs.end()).size(), n.inputs.size());
+            auto sorted = n.inputs;
+            std::sort(sorted.begin(), sorted.end());
+            EXPECT_EQ(sorted, t.two_ring(f)) << name << " face " << f;
+        }
+    }
+}
+
+// Faces of one type have the same stencil, whatever patch it was made from.
+TEST(Connectivity, EqualTypesHaveEqualStencilsBitForBit)
+{
+    for (char const* name : {"jug", "spindle", "saddle_star"}) {
+        ControlMesh const m = load_model(name).mesh;
+        Topology const t(m);
+        std::map<std::string, GregoryStencils> first;
+        Neighbourhood n;
+        for (std::uint32_t f = 0; f < m.faces(); ++f) {
+            find_neighbourhood(t, f, n);
+            GregoryStencils const s = make_gregory_stencils(n, false, {});
+            auto const [it, fresh] = first.try_emplace(n.key, s);
+            EXPECT_EQ(it->second.rows, s.rows) << name << " face " << f;
+        }
+        EXPECT_LT(first.size(), m.faces());
+    }
+}
+
+// Shared control points have weights with equal bits from all patches, per mesh vertex.
+TEST(GregoryStencils, SharedControlPointsHaveEqualWeightsInEveryPatch)
+{
+    for (char const* name : {"jug", "spindle", "saddle_star"}) {
+        ControlMesh const m = load_model(name).mesh;
+        Topology const t(m);
+        using Weights = std::map<std::uint32_t, double>;
+        std::map<std::pair<std::uint32_t, std::uint32_t>, Weights> edge_points; // (vertex, towards)
+        std::map<std::uint32_t, Weights> vertex_points;
+        Neighbourhood n;
+        std::size_t shared = 0;
+        auto const check = [&](auto& seen, auto const& key, std::vector<double> const& row) {
+            Weights w;
+            for (std::size_t i = 0; i < row.size(); ++i)
+                if (row[i] != 0) w[n.inputs[i]] = row[i];
+            auto const [it, fresh] = seen.try_emplace(key, w);
+            EXPECT_EQ(it->second, w) << name;
+            shared += !fresh;
+        };
+        for (std::uint32_t f = 0; f < m.faces(); ++f) {
+            find_neighbourhood(t, f, n);
+            GregoryStencils const s = make_gregory_stencils(n, false, {});
+            auto const face = m.face(f);
+            int const N = n.sides;
+            auto const vertex = [&](int i) { return face[std::size_t((i + n.rotation + N) % N)]; };
+            for (int i = 0; i < N; ++i) {
+                check(vertex_points, vertex(i), s.rows[std::size_t(i)]);
+                check(edge_points, std::pair(vertex(i), vertex(i + 1)), s.rows[std::size_t(N + i)]);
+                check(edge_points, std::pair(vertex(i), vertex(i - 1)), s.rows[std::size_t(2 * N + i)]);
+            }
+        }
+        EXPECT_GT(shared, m.faces());
+    }
+}
+
+TEST(GregoryStencil, RefusesAPatchPastThirtyTwoInputsAndNamesIt)
+{
+    TESSEMU_NEEDS_SHARED("models/bad/valence40.obj");
+    ControlMesh const m = load_model(test::shared("models/bad/valence40.obj").string()).mesh;
+    Topology const t(m);
+    try {
+        (void)find_technique("gregory-stencil").build(t, {});
+        FAIL();
+    } catch (LimitError const& e) {
+        EXPECT_NE(std::string(e.what()).find("valences 40, 3, 2, 3"), std::string::npos) << e.what();
+        EXPECT_GT(e.value, 32u);
+        EXPECT_EQ(e.limit, 32u);
+    }
+}
+
+TEST(GregoryStencil, HolesAndBoundaryRuleNoneAreNotDrawn)
+{
+    ControlMesh m = load_model("saddle_star").mesh;
+    std::size_t const faces = m.faces();
+    auto const drawn = [&] {
+        Topology const t(m);
+        std::size_t n = 0;
+        auto const patches = find_technique("gregory-stencil").build(t, {});
+        for (PatchCount const& c : patches->patch_counts()) n += c.patches;
+        return n;
+    };
+    EXPECT_EQ(drawn(), faces);
+    m.holes = {0, 5};
+    EXPECT_EQ(drawn(), faces - 2);
+    m.holes.clear();
+    m.boundary = BoundaryRule::None;
+    EXPECT_LT(drawn(), faces);
+}
+
+} // namespace
+} // namespace tessemu
