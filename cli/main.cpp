@@ -122,7 +122,7 @@ glm::vec3 parse_vector(std::string const& text)
 // auto, from=X,Y,Z, or eye=X,Y,Z with target=, up=, focal=, joined by colons.
 Camera parse_camera(std::string const& text, ControlMesh const& mesh, float width_over_height)
 {
-    glm::vec3 from(0.55f, 0.42f, 1.0f);
+    glm::vec3 from(0.5f, 0.5f, 1.0f);
     std::optional<glm::vec3> eye, target, up;
     std::optional<float> focal;
     if (text != "auto") {

@@ -98,6 +98,15 @@ private:
 /// for (int i : loop<T>(n)): 0 to n-1; every turn is the same place in the source.
 template <class T> constexpr detail::Loop<T> loop(int n) { return detail::Loop<T>(n); }
 
+/// unrolled<n>(body): body(0), ..., body(n-1) with the index a constant, as a shader compiler unrolls; each
+/// turn is a place in the source of its own.
+template <int kTurns, class Body> constexpr void unrolled(Body&& body)
+{
+    [&]<int... i>(std::integer_sequence<int, i...>) {
+        (body(std::integral_constant<int, i>()), ...);
+    }(std::make_integer_sequence<int, kTurns>());
+}
+
 /// Declared first in a routine that several shaders share: one compiled routine, so a contraction
 /// decision in it is the same for every caller.
 template <class T> class [[maybe_unused]] Routine {

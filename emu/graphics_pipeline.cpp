@@ -438,8 +438,9 @@ private:
         StageStatistics& ps = add("pixel_shader", pixel_.invocations, pixel_);
         ps_buffers_.report(pixel_, ps);
         ps.output_bytes = pixel_.invocations * 4 * sizeof(float);
+        std::uint64_t const color_bytes = ps.output_bytes;
         StageStatistics& om = add("output_merger", covered_samples_, {});
-        om.output_bytes = depth_passes_ * sizeof(float) + ps.output_bytes;
+        om.output_bytes = depth_passes_ * sizeof(float) + color_bytes;
     }
 
     GraphicsPipelineDesc const& d_;

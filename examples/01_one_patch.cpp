@@ -46,7 +46,9 @@ int main()
     desc.hull_shader = make_hull_program(Corners{}, {});
     desc.domain_shader = make_domain_program(Bilinear{}, {});
     desc.input_control_points = 4;
-    DrawCall call{.control_points = 4, .vertices = corners, .vertex_count = 4};
+    DrawCall call;
+    call.vertices = corners;
+    call.vertex_count = 4;
     auto const print = [](ShadedPatch const& p) {
         for (std::size_t i = 0; i < p.points->patch.points(); ++i)
             std::printf("%g %g %g\n", p.outputs[i], p.outputs[p.stride + i], p.outputs[2 * p.stride + i]);

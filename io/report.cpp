@@ -17,7 +17,8 @@ namespace {
 Json to_json(Config const& config)
 {
     Json j = Json::object();
-    for (auto const& [name, value] : config) std::visit([&](auto const& v) { j[name] = v; }, value);
+    for (auto const& entry : config) // no structured binding: clang 14 cannot capture one
+        std::visit([&](auto const& value) { j[entry.first] = value; }, entry.second);
     return j;
 }
 

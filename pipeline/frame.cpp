@@ -98,10 +98,11 @@ DrawStatistics visit_surface(PatchMesh const& mesh, FrameSettings const& s, Thre
                              SurfaceVisitor const& visit)
 {
     DrawStatistics statistics;
-    for (DrawPass const& pass : mesh.passes(pass_settings(s)))
-        statistics += draw(
-            pass.pipeline, pass.call, nullptr, [&](ShadedPatch const& p) { visit(pass, p); }, threads,
-            {s.vertex_cache, {}});
+    for (DrawPass const& pass : mesh.passes(pass_settings(s))) {
+        PatchVisitor visitor;
+        if (visit) visitor = [&](ShadedPatch const& p) { visit(pass, p); };
+        statistics += draw(pass.pipeline, pass.call, nullptr, visitor, threads, {s.vertex_cache, {}});
+    }
     return statistics;
 }
 

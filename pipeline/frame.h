@@ -45,7 +45,7 @@ Frame draw_frame(PatchMesh const& mesh, FrameSettings const& settings, ThreadPoo
 /// position's x, y, z are the surface's, bit for bit (w is 1).
 using SurfaceVisitor = std::function<void(DrawPass const&, ShadedPatch const&)>;
 
-/// Tessellates without raster; uses machine, factors and cache of `settings`.
+/// Tessellates without raster; uses machine, factors and cache of `settings`. `visit` may be empty.
 DrawStatistics visit_surface(PatchMesh const& mesh, FrameSettings const& settings,
                              ThreadPool const& threads, SurfaceVisitor const& visit);
 

@@ -55,9 +55,9 @@ def jug():
 
     def spout(a):
         t = max(0.0, math.cos(a)) ** 4
-        return (0.42 * t, 0.12 * t, 0.0)
+        return (0.26 * t, 0.10 * t, 0.0)
     collar = c.ring(16, 0.63, 2.24, 1.0, lambda a: tuple(0.5 * x for x in spout(a)))
-    lip = c.ring(16, 0.80, 2.38, 1.0, spout)
+    lip = c.ring(16, 0.74, 2.42, 1.0, spout)
     neck = rings[5]
     for k in range(8):  # 8 to 16: three triangles a side
         a, b = neck[k], neck[(k + 1) % 8]

@@ -41,20 +41,22 @@ template <class T, class Net> constexpr TangentFrame<T> bicubic(Net const& net, 
 {
     CubicBasis<T> const U(u), V(v);
     TangentFrame<T> s{};
-    for (int i = 0; i < 4; ++i) {
+    unrolled<4>([&](auto i) {
         float3<T> const b0 = net(i, 0), b1 = net(i, 1), b2 = net(i, 2), b3 = net(i, 3);
-        float3<T> const row = V.b[0] * b0 + V.b[1] * b1 + V.b[2] * b2 + V.b[3] * b3;
-        float3<T> const row_dv = V.d[0] * b0 + V.d[1] * b1 + V.d[2] * b2 + V.d[3] * b3;
-        if (i == 0) {
-            s.position = U.b[0] * row;
-            s.du = U.d[0] * row;
-            s.dv = U.b[0] * row_dv;
-        } else {
-            s.position = s.position + U.b[i] * row;
-            s.du = s.du + U.d[i] * row;
-            s.dv = s.dv + U.b[i] * row_dv;
-        }
-    }
+        components([&](auto of) {
+            T const row = V.b[0] * of(b0) + V.b[1] * of(b1) + V.b[2] * of(b2) + V.b[3] * of(b3);
+            T const row_dv = V.d[0] * of(b0) + V.d[1] * of(b1) + V.d[2] * of(b2) + V.d[3] * of(b3);
+            if constexpr (i == 0) {
+                of(s.position) = U.b[0] * row;
+                of(s.du) = U.d[0] * row;
+                of(s.dv) = U.b[0] * row_dv;
+            } else {
+                of(s.position) = of(s.position) + U.b[i] * row;
+                of(s.du) = of(s.du) + U.d[i] * row;
+                of(s.dv) = of(s.dv) + U.b[i] * row_dv;
+            }
+        });
+    });
     return s;
 }
 
@@ -69,12 +71,13 @@ template <class T>
 constexpr TangentFrame<T> quartic_triangle(float3<T> const (&b)[5][5], T u, T v, T w)
 {
     float3<T> q[5][5];
-    for (int r = 0; r < 5; ++r)
-        for (int k = 0; k <= r; ++k) q[r][k] = b[r][k];
-    for (int degree = 4; degree > 1; --degree)
-        for (int r = 0; r < degree; ++r)
-            for (int k = 0; k <= r; ++k)
-                q[r][k] = u * q[r][k] + v * q[r + 1][k] + w * q[r + 1][k + 1];
+    unrolled<5>([&](auto r) { unrolled<r + 1>([&](auto k) { q[r][k] = b[r][k]; }); });
+    unrolled<3>([&](auto step) {
+        unrolled<4 - step>([&](auto r) {
+            unrolled<r + 1>(
+                [&](auto k) { q[r][k] = u * q[r][k] + v * q[r + 1][k] + w * q[r + 1][k + 1]; });
+        });
+    });
     TangentFrame<T> s{};
     s.position = u * q[0][0] + v * q[1][0] + w * q[1][1];
     s.du = q[0][0] - q[1][1];

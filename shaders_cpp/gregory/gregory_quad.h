@@ -33,6 +33,7 @@ template <class T> struct BlendedFacePoint {
     float3<T> point, difference; ///< F, X - Y
     T a, b, reciprocal;          ///< 1 / (a + b)
 
+    constexpr BlendedFacePoint() = default;
     /// At the patch's corner a + b is 0 and so is F's Bernstein factor: any finite F will do.
     constexpr BlendedFacePoint(T a_, float3<T> const& X, T b_, float3<T> const& Y) : a(a_), b(b_)
     {
@@ -67,19 +68,19 @@ constexpr TangentFrame<T> gregory_quad(ControlPoints<ControlVertex<T>> const& pa
     Routine<T> const here("gregory_quad");
     T const U = T(1) - u, V = T(1) - v;
     auto const at = [&](int i) { return patch[i].position; };
-    BlendedFacePoint<T> const F0(u, at(L::f_plus(0)), v, at(L::f_minus(0)));
-    BlendedFacePoint<T> const F1(U, at(L::f_minus(1)), v, at(L::f_plus(1)));
-    BlendedFacePoint<T> const F2(U, at(L::f_plus(2)), V, at(L::f_minus(2)));
-    BlendedFacePoint<T> const F3(u, at(L::f_minus(3)), V, at(L::f_plus(3)));
+    BlendedFacePoint<T> F0, F1, F2, F3;
 
-    constexpr int kInner = -1;
+    // Each face point is made when its row asks for it, which keeps few values alive at a time.
     constexpr int net[4][4] = {{L::p(0), L::e_minus(0), L::e_plus(3), L::p(3)},
-                               {L::e_plus(0), kInner, kInner, L::e_minus(3)},
-                               {L::e_minus(1), kInner, kInner, L::e_plus(2)},
+                               {L::e_plus(0), -1, -1, L::e_minus(3)},
+                               {L::e_minus(1), -1, -1, L::e_plus(2)},
                                {L::p(1), L::e_plus(1), L::e_minus(2), L::p(2)}};
     auto const point = [&](int i, int j) -> float3<T> {
-        if (net[i][j] != kInner) return at(net[i][j]);
-        return i == 1 ? (j == 1 ? F0.point : F3.point) : (j == 1 ? F1.point : F2.point);
+        if (i == 1 && j == 1) return (F0 = {u, at(L::f_plus(0)), v, at(L::f_minus(0))}).point;
+        if (i == 2 && j == 1) return (F1 = {U, at(L::f_minus(1)), v, at(L::f_plus(1))}).point;
+        if (i == 2 && j == 2) return (F2 = {U, at(L::f_plus(2)), V, at(L::f_minus(2))}).point;
+        if (i == 1 && j == 2) return (F3 = {u, at(L::f_minus(3)), V, at(L::f_plus(3))}).point;
+        return at(net[i][j]);
     };
     TangentFrame<T> s = bicubic<T>(point, u, v);
     if (true_normals) {

@@ -50,11 +50,11 @@ struct LitPixelShader {
         T const highlight = T(0.22) * T(h16 * h16);
         auto const channel = [&](float albedo, float ground, float skylight) -> T {
             T const ambient = T(ground) + T(skylight - ground) * sky;
-            T const shade = ambient + T(0.72) * diffuse;
+            T const shade = ambient + T(0.62) * diffuse;
             return saturate(T(T(albedo) * shade + highlight));
         };
-        return {channel(base[0], 0.20f, 0.36f), channel(base[1], 0.17f, 0.40f),
-                channel(base[2], 0.16f, 0.50f), T(1)};
+        return {channel(base[0], 0.34f, 0.42f), channel(base[1], 0.30f, 0.46f),
+                channel(base[2], 0.30f, 0.56f), T(1)};
     }
 };
 

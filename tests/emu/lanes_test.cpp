@@ -30,8 +30,8 @@ TYPED_TEST_SUITE(LanesOf, Widths);
 TYPED_TEST(LanesOf, EveryOperationEqualsTheScalarBitForBit)
 {
     using L = TypeParam;
-    constexpr int N = lanes_of<L>;
     bool const ok = rc::check([] {
+        constexpr int N = lanes_of<L>;
         float a[N], b[N], c[N];
         L x, y, z;
         for (int i = 0; i < N; ++i) {

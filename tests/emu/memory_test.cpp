@@ -79,7 +79,6 @@ struct FetchingDomain {
 struct Counts {
     std::uint64_t control_points, control_point_bytes, unique_control_point_bytes, table, unique_table, texels;
     std::uint64_t unique_texels;
-    friend bool operator==(Counts const&, Counts const&) = default;
 };
 
 Counts run(int lanes, int threads, bool skip_second)

@@ -1,0 +1,64 @@
+// Whole draws: bigguy at 1024x1024, culling off, counting on; the jug where bigguy is not there.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "io/model.h"
+#include "pipeline/frame.h"
+
+#include <benchmark/benchmark.h>
+
+#include <filesystem>
+
+namespace tessemu {
+namespace {
+
+void whole_frame(benchmark::State& state)
+{
+    std::string const bigguy = std::string(TESSEMU_SHARED_DIR) + "/models/bigguy.obj";
+    Technique const& technique = find_technique("gregory-stencil");
+    PreparedMesh const mesh =
+        prepare_mesh(load_model(std::filesystem::exists(bigguy) ? bigguy : "jug").mesh, technique);
+    auto const patches = technique.build(*mesh.topology, {});
+    FrameSettings s;
+    s.tess_factor = float(state.range(0));
+    s.camera = frame_points(mesh.mesh->positions, {0.55f, 0.42f, 1}, 1);
+    ThreadPool const threads(int(state.range(1)));
+    DrawStatistics statistics;
+    for (auto _ : state) statistics = draw_frame(*patches, s, threads).statistics;
+    PipelineStatistics const& p = statistics.pipeline;
+    if (p.PSInvocations == 0) state.SkipWithError("nothing was drawn");
+    state.counters["points"] = double(p.DSInvocations);
+    state.counters["triangles"] = double(p.CInvocations);
+    state.counters["vertices/triangle"] = double(p.DSInvocations) / double(p.CInvocations);
+    state.counters["PS"] = double(p.PSInvocations);
+    for (StageStatistics const& stage : statistics.stages)
+        if (stage.stage == "domain_shader")
+            for (FetchStatistics const& f : stage.fetches)
+                if (f.resource == "control_points")
+                    state.counters["fetched_bytes/patch"] = double(f.bytes) / double(p.HSInvocations);
+}
+BENCHMARK(whole_frame)
+    ->ArgsProduct({{3, 10, 17, 25, 64}, {1, 2}})
+    ->ArgNames({"tess", "threads"})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+void geometry_only(benchmark::State& state)
+{
+    std::string const bigguy = std::string(TESSEMU_SHARED_DIR) + "/models/bigguy.obj";
+    Technique const& technique = find_technique("gregory-stencil");
+    PreparedMesh const mesh =
+        prepare_mesh(load_model(std::filesystem::exists(bigguy) ? bigguy : "jug").mesh, technique);
+    auto const patches = technique.build(*mesh.topology, {});
+    FrameSettings s;
+    s.tess_factor = float(state.range(0));
+    ThreadPool const threads(1);
+    DrawStatistics statistics;
+    for (auto _ : state) statistics = visit_surface(*patches, s, threads, {});
+    if (statistics.pipeline.DSInvocations == 0) state.SkipWithError("nothing was evaluated");
+    state.counters["Mpoint/s"] = benchmark::Counter(double(statistics.pipeline.DSInvocations) * 1e-6,
+                                                    benchmark::Counter::kIsIterationInvariantRate);
+}
+BENCHMARK(geometry_only)->Arg(3)->Arg(10)->Arg(17)->Arg(25)->Arg(64)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+} // namespace
+} // namespace tessemu

@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# Builds the program with g++ and clang at -O0 and -O2, draws and exports four cages with -j 1, 2, 3, 8 and lanes 4, 8, 16,
+# and compares the hashes of all runs. Exit 1 if any differ.
+set -euo pipefail
+source "$(dirname "$0")/setup.sh"
+install_packages
+models=(jug spindle saddle_star)
+polygons=build/determinism/polygons.obj
+mkdir -p build/determinism
+# A cage with n-gons: a pentagonal prism.
+cat >"$polygons" <<'OBJ'
+v 1 0 0
+v 0.309 0.951 0
+v -0.809 0.588 0
+v -0.809 -0.588 0
+v 0.309 -0.951 0
+v 1 0 1
+v 0.309 0.951 1
+v -0.809 0.588 1
+v -0.809 -0.588 1
+v 0.309 -0.951 1
+f 5 4 3 2 1
+f 6 7 8 9 10
+f 1 2 7 6
+f 2 3 8 7
+f 3 4 9 8
+f 4 5 10 9
+f 5 1 6 10
+OBJ
+models+=("$polygons")
+
+hash_of() { sed -n 's/^  "hash": "\(.*\)",$/\1/p'; }
+declare -A expected
+failures=0
+runs=0
+check() { # key, hash, what
+    runs=$((runs + 1))
+    if [ -z "${expected[$1]:-}" ]; then
+        expected[$1]=$2
+    elif [ "${expected[$1]}" != "$2" ]; then
+        echo "DIFFERS: $1 with $3: $2 instead of ${expected[$1]}"
+        failures=$((failures + 1))
+    fi
+}
+
+for compiler in g++ clang++; do
+    for level in O0 O2; do
+        folder=build/determinism/$compiler-$level
+        cmake -S . -B "$folder" -G Ninja -DCMAKE_CXX_COMPILER=$compiler -DCMAKE_BUILD_TYPE= \
+            -DCMAKE_CXX_FLAGS="-$level -march=native" -DTESSEMU_BUILD_TESTS=OFF -DTESSEMU_BUILD_BENCH=OFF >/dev/null
+        cmake --build "$folder" --target tessemu_program
+        for model in "${models[@]}"; do
+            for threads in 1 2 3 8; do
+                for lanes in 4 8 16; do
+                    what="$compiler -$level -j $threads --lanes $lanes"
+                    options="--tess 5.3 -j $threads --lanes $lanes --json -"
+                    for contraction in none all mixed:7; do
+                        check "draw $model $contraction" "$("$folder/tessemu" draw "$model" --size 200x150 \
+                            --contraction $contraction $options 2>/dev/null | hash_of)" "$what"
+                    done
+                    check "export $model" "$("$folder/tessemu" export "$model" -o "$folder/mesh.ply" $options \
+                        2>/dev/null | hash_of)" "$what"
+                done
+            done
+        done
+    done
+done
+for key in "${!expected[@]}"; do echo "${expected[$key]:0:16}  $key"; done | sort -k2
+echo "$runs runs, $failures differ"
+[ "$failures" -eq 0 ]

@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""Draws the pictures of docs/images with the built program. Standard library only."""
+import json
+import pathlib
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+OUT = ROOT / "docs" / "images"
+TESSEMU = ROOT / "build" / "release" / "tessemu"
+
+
+def run(*arguments):
+    return subprocess.run([TESSEMU, *arguments], check=True, capture_output=True, text=True).stdout
+
+
+def pictures():
+    for name, options in (("jug.png", []), ("jug_patches.png", ["--view", "patches"])):
+        run("draw", "jug", "--tess", "24", "--size", "640x640", *options, "-o", str(OUT / name))
+
+
+def patterns():
+    rows = [
+        ("quad, integer 5", "quad", "integer", [5] * 6),
+        ("quad, fractional_odd 5.4", "quad", "fractional_odd", [5.4] * 6),
+        ("quad, edges 2 9 5 3, inside 6 4", "quad", "fractional_even", [2, 9, 5, 3, 6, 4]),
+        ("tri, integer 5", "tri", "integer", [5] * 4),
+        ("tri, fractional_even 5.4", "tri", "fractional_even", [5.4] * 4),
+        ("tri, edges 2 9 5, inside 4", "tri", "fractional_odd", [2, 9, 5, 4]),
+    ]
+    size, gap = 200, 30
+    svg = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 %d %d" font-family="sans-serif" font-size="12">'
+           % (3 * (size + gap) + gap, 2 * (size + gap + 20) + gap), '<rect width="100%" height="100%" fill="white"/>']
+    for i, (title, domain, partitioning, factors) in enumerate(rows):
+        x0, y0 = gap + (i % 3) * (size + gap), gap + (i // 3) * (size + gap + 20)
+        patch = json.loads(run("tessellate", "--domain", domain, "--partitioning", partitioning, "--factors",
+                               *map(str, factors)))
+
+        def at(k):
+            u, v = patch["u"][k] / 65536, patch["v"][k] / 65536
+            if domain == "tri":  # u = 1 lower left, v = 1 lower right, w = 1 on top
+                u, v = (1 - u + v) / 2, 0.933 - 0.866 * (1 - u - v)
+            return x0 + size * u, y0 + size * v
+        lines = set()
+        for t in range(0, len(patch["indices"]), 3):
+            a = patch["indices"][t:t + 3]
+            lines |= {tuple(sorted((a[k], a[(k + 1) % 3]))) for k in range(3)}
+        path = "".join("M%.1f %.1fL%.1f %.1f" % (*at(a), *at(b)) for a, b in sorted(lines))
+        svg.append('<path d="%s" stroke="#2563a8" stroke-width="0.8" fill="none"/>' % path)
+        svg += ['<circle cx="%.1f" cy="%.1f" r="1.6" fill="#e07b1a"/>' % at(k) for k in range(len(patch["u"]))]
+        svg.append('<text x="%d" y="%d" fill="#333">%s</text>' % (x0, y0 + size + 18, title))
+    (OUT / "patterns.svg").write_text("\n".join(svg + ["</svg>\n"]))
+
+
+def stages():
+    boxes = [("input assembler", 0), ("vertex cache", 0), ("vertex shader", 1), ("hull shader", 1), ("tessellator", 0),
+             ("domain shader", 1), ("assembly, clip", 0), ("rasterizer", 0), ("pixel shader", 1), ("output merger", 0)]
+    flows = ["vertices", "misses", "control points", "output points, patch constants, tess factors",
+             "domain points u, v and triangles", "clip-space vertices", "16.8 triangles", "fragments", "colours"]
+    w, h, step = 170, 30, 56
+    svg = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 560 %d" font-family="sans-serif" font-size="13">'
+           % (len(boxes) * step + 10), '<rect width="100%" height="100%" fill="white"/>']
+    for i, (name, programmable) in enumerate(boxes):
+        y = 10 + i * step
+        svg.append('<rect x="20" y="%d" width="%d" height="%d" rx="6" fill="%s" stroke="#555"/>'
+                   % (y, w, h, "#cfe3fb" if programmable else "#eeeeee"))
+        svg.append('<text x="%d" y="%d" text-anchor="middle">%s</text>' % (20 + w / 2, y + 20, name))
+        if i < len(flows):
+            svg.append('<path d="M%d %dv%d" stroke="#555" marker-end="url(#a)"/>' % (20 + w / 2, y + h, step - h - 5))
+            svg.append('<text x="%d" y="%d" fill="#666" font-size="12">%s</text>' % (30 + w / 2, y + h + 17, flows[i]))
+    svg.append('<text x="230" y="30" fill="#333">blue: programmable, a shader runs on lanes and is counted</text>')
+    svg.append('<text x="230" y="50" fill="#333">grey: fixed function</text>')
+    svg.append('<defs><marker id="a" viewBox="0 0 6 6" refX="3" refY="3" markerWidth="6" markerHeight="6" orient="auto">'
+               '<path d="M0 0L6 3L0 6z" fill="#555"/></marker></defs>')
+    (OUT / "stages.svg").write_text("\n".join(svg + ["</svg>\n"]))
+
+
+if __name__ == "__main__":
+    OUT.mkdir(parents=True, exist_ok=True)
+    pictures()
+    patterns()
+    stages()
