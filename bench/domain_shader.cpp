@@ -1,8 +1,8 @@
 // Gregory evaluation with unit normals, lanes across the points of a patch, one thread.
 //
-// Counters: evaluations per second, multiplications and all operations per point. The limit to compare
-// with is the hand-written kernel "fly cached 1 thr" of ../shared/peers/bound, built with contraction off
-// for the same instruction set; scripts/bench_bound.sh runs both in turn.
+// Counters: evaluations per second, multiplications and all operations per point. The limit to
+// compare with is the hand-written kernel "fly cached 1 thr" of ../shared/peers/bound, built with
+// contraction off for the same instruction set; scripts/bench_bound.sh runs both in turn.
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "shaders_cpp/gregory/domain_shaders.h"
@@ -23,7 +23,8 @@ template <class Inside> struct Evaluation {
     template <class T> using PatchConstant = EdgeRegister<T>;
     template <class T> using Output = SurfacePoint<T>;
     template <class T>
-    SurfacePoint<T> operator()(DomainInput<T> const& in, ControlPoints<ControlVertex<T>> const& patch,
+    SurfacePoint<T> operator()(DomainInput<T> const& in,
+                               ControlPoints<ControlVertex<T>> const& patch,
                                ControlPoints<EdgeRegister<T>> const&) const
     {
         TangentFrame<T> const s = Inside::template evaluate<T>(patch, in, false);
@@ -39,10 +40,16 @@ struct Workload {
     Workload(int n, int per_patch) : points(std::size_t(n * n)), padded((points + 15) / 16 * 16)
     {
         std::uint32_t state = 1;
-        auto const random = [&] { return float((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-24f; };
+        auto const random = [&] {
+            return float((state = state * 1664525u + 1013904223u) >> 8) * 0x1p-24f;
+        };
         for (std::size_t p = 0; p < kPatches; ++p)
             for (int i = 0; i < per_patch; ++i)
-                for (int k = 0; k < 3; ++k) control_points.push_back(float(k == 0 ? i % 4 : k == 1 ? i / 4 : 0) + 0.3f * random());
+                for (int k = 0; k < 3; ++k)
+                    control_points.push_back(float(k == 0   ? i % 4
+                                                   : k == 1 ? i / 4
+                                                            : 0) +
+                                             0.3f * random());
         registers.assign(24 * 4, 0.5f);
         for (std::size_t i = 0; i < padded; ++i) {
             std::size_t const k = std::min(i, points - 1), w = std::size_t(n);
@@ -53,7 +60,8 @@ struct Workload {
     }
 };
 
-template <class Shader, class T, class Check = Lanes<4>> void run(benchmark::State& state, int per_patch)
+template <class Shader, class T, class Check = Lanes<4>>
+void run(benchmark::State& state, int per_patch)
 {
     Workload w(int(state.range(0)), per_patch);
     DomainProgramOn<Shader, T> const program(Shader{}, 0);
@@ -63,8 +71,9 @@ template <class Shader, class T, class Check = Lanes<4>> void run(benchmark::Sta
     for (auto _ : state) {
         StageScope const scope(counters, buffers);
         for (std::size_t p = 0; p < Workload::kPatches; ++p) {
-            program.run({w.control_points.data() + p * std::size_t(per_patch) * 3, w.registers.data(), std::int32_t(p),
-                         w.u.data(), w.v.data(), w.points, w.out.data(), w.padded},
+            program.run({w.control_points.data() + p * std::size_t(per_patch) * 3,
+                         w.registers.data(), std::int32_t(p), w.u.data(), w.v.data(), w.points,
+                         w.out.data(), w.padded},
                         24, counters);
             benchmark::ClobberMemory();
         }
@@ -76,19 +85,23 @@ template <class Shader, class T, class Check = Lanes<4>> void run(benchmark::Sta
     StageCounters ignored;
     {
         DenormalMode const flush(DenormalMode::Flush);
-        narrow.run({w.control_points.data() + (Workload::kPatches - 1) * std::size_t(per_patch) * 3, w.registers.data(),
-                    std::int32_t(Workload::kPatches - 1), w.u.data(), w.v.data(), w.points, check.data(), w.padded},
+        narrow.run({w.control_points.data() + (Workload::kPatches - 1) * std::size_t(per_patch) * 3,
+                    w.registers.data(), std::int32_t(Workload::kPatches - 1), w.u.data(),
+                    w.v.data(), w.points, check.data(), w.padded},
                    24, ignored);
     }
     for (std::size_t k = 0; k < 6; ++k)
         for (std::size_t i = 0; i < w.points; ++i)
-            if (std::bit_cast<std::uint32_t>(check[k * w.padded + i]) != std::bit_cast<std::uint32_t>(w.out[k * w.padded + i]))
+            if (std::bit_cast<std::uint32_t>(check[k * w.padded + i]) !=
+                std::bit_cast<std::uint32_t>(w.out[k * w.padded + i]))
                 return state.SkipWithError("results differ between lane counts");
-    state.counters["Meval/s"] = benchmark::Counter(double(evaluations) * 1e-6, benchmark::Counter::kIsRate);
+    state.counters["Meval/s"] =
+        benchmark::Counter(double(evaluations) * 1e-6, benchmark::Counter::kIsRate);
     if (ScalarTraits<T>::kCounted) {
         FlopCount const& c = counters.flops;
         state.counters["mul/point"] = double(c.mul) / double(evaluations);
-        state.counters["flops/point"] = double(c.add + c.mul + c.mad + c.div + c.sqrt) / double(evaluations);
+        state.counters["flops/point"] =
+            double(c.add + c.mul + c.mad + c.div + c.sqrt) / double(evaluations);
         state.counters["reads/point"] = double(counters.input_fetches) / double(evaluations);
     }
 }
@@ -97,19 +110,35 @@ using Quad = Evaluation<GregoryQuadInside>;
 using Regular = Evaluation<RegularQuadInside>;
 using Triangle = Evaluation<GregoryTriangleInside>;
 
-void gregory_quad_uncounted(benchmark::State& s) { run<Quad, Lanes<kNativeLanes>>(s, 20); }
-void gregory_quad_counted(benchmark::State& s) { run<Quad, Counted<Lanes<kNativeLanes>>>(s, 20); }
+void gregory_quad_uncounted(benchmark::State& s)
+{
+    run<Quad, Lanes<kNativeLanes>>(s, 20);
+}
+void gregory_quad_counted(benchmark::State& s)
+{
+    run<Quad, Counted<Lanes<kNativeLanes>>>(s, 20);
+}
 void gregory_quad_counted_contracted(benchmark::State& s)
 {
-    run<Quad, Contracted<Counted<Lanes<kNativeLanes>>, policy::All>, Contracted<Lanes<4>, policy::All>>(s, 20);
+    run<Quad, Contracted<Counted<Lanes<kNativeLanes>>, policy::All>,
+        Contracted<Lanes<4>, policy::All>>(s, 20);
 }
-void gregory_quad_counted_8_lanes(benchmark::State& s) { run<Quad, Counted<Lanes<8>>>(s, 20); }
+void gregory_quad_counted_8_lanes(benchmark::State& s)
+{
+    run<Quad, Counted<Lanes<8>>>(s, 20);
+}
 void gregory_quad_whole_domain_shader(benchmark::State& s)
 {
     run<GregoryQuadDomainShader, Counted<Lanes<kNativeLanes>>>(s, 20);
 }
-void regular_quad_counted(benchmark::State& s) { run<Regular, Counted<Lanes<kNativeLanes>>>(s, 16); }
-void gregory_triangle_counted(benchmark::State& s) { run<Triangle, Counted<Lanes<kNativeLanes>>>(s, 15); }
+void regular_quad_counted(benchmark::State& s)
+{
+    run<Regular, Counted<Lanes<kNativeLanes>>>(s, 16);
+}
+void gregory_triangle_counted(benchmark::State& s)
+{
+    run<Triangle, Counted<Lanes<kNativeLanes>>>(s, 15);
+}
 
 BENCHMARK(gregory_quad_uncounted)->Arg(17)->Arg(64)->Unit(benchmark::kMillisecond);
 BENCHMARK(gregory_quad_counted)->Arg(17)->Arg(64)->Unit(benchmark::kMillisecond);

@@ -34,7 +34,8 @@ void whole_frame(benchmark::State& state)
         if (stage.stage == "domain_shader")
             for (FetchStatistics const& f : stage.fetches)
                 if (f.resource == "control_points")
-                    state.counters["fetched_bytes/patch"] = double(f.bytes) / double(p.HSInvocations);
+                    state.counters["fetched_bytes/patch"] =
+                        double(f.bytes) / double(p.HSInvocations);
 }
 BENCHMARK(whole_frame)
     ->ArgsProduct({{3, 10, 17, 25, 64}, {1, 2}})
@@ -55,10 +56,18 @@ void geometry_only(benchmark::State& state)
     DrawStatistics statistics;
     for (auto _ : state) statistics = visit_surface(*patches, s, threads, {});
     if (statistics.pipeline.DSInvocations == 0) state.SkipWithError("nothing was evaluated");
-    state.counters["Mpoint/s"] = benchmark::Counter(double(statistics.pipeline.DSInvocations) * 1e-6,
-                                                    benchmark::Counter::kIsIterationInvariantRate);
+    state.counters["Mpoint/s"] =
+        benchmark::Counter(double(statistics.pipeline.DSInvocations) * 1e-6,
+                           benchmark::Counter::kIsIterationInvariantRate);
 }
-BENCHMARK(geometry_only)->Arg(3)->Arg(10)->Arg(17)->Arg(25)->Arg(64)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(geometry_only)
+    ->Arg(3)
+    ->Arg(10)
+    ->Arg(17)
+    ->Arg(25)
+    ->Arg(64)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 } // namespace
 } // namespace tessemu

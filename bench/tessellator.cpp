@@ -21,8 +21,10 @@ template <TessellatorDomain kDomain> void uniform_factor(benchmark::State& state
         triangles += patch.indices.size() / 3;
     }
     if (points == 0) state.SkipWithError("no points");
-    state.counters["Mpoint/s"] = benchmark::Counter(double(points) * 1e-6, benchmark::Counter::kIsRate);
-    state.counters["Mtri/s"] = benchmark::Counter(double(triangles) * 1e-6, benchmark::Counter::kIsRate);
+    state.counters["Mpoint/s"] =
+        benchmark::Counter(double(points) * 1e-6, benchmark::Counter::kIsRate);
+    state.counters["Mtri/s"] =
+        benchmark::Counter(double(triangles) * 1e-6, benchmark::Counter::kIsRate);
 }
 
 BENCHMARK(uniform_factor<TessellatorDomain::Quad>)->Arg(30)->Arg(103)->Arg(167)->Arg(630);

@@ -26,7 +26,8 @@ namespace {
 struct Options {
     std::string model, output, json;
     std::string scheme = "gregory-stencil", partitioning = "fractional_odd", size = "1024x1024";
-    std::string camera = "auto", view = "lit", normals = "frozen", contraction = "none", cull = "none";
+    std::string camera = "auto", view = "lit", normals = "frozen", contraction = "none",
+                cull = "none";
     std::string vertex_cache = "fifo:16";
     std::string domain = "quad", primitive = "triangle_cw", batch;
     std::vector<double> factors;
@@ -61,7 +62,8 @@ public:
         if (!isatty(STDERR_FILENO) || clock_.seconds() < 1 || all == 0) return;
         int const width = 40, filled = int(std::uint64_t(width) * done / all);
         fmt::print(stderr, "\r[{}{}] {:3d} %", std::string(std::size_t(filled), '#'),
-                   std::string(std::size_t(width - filled), '.'), int(100 * std::uint64_t(done) / all));
+                   std::string(std::size_t(width - filled), '.'),
+                   int(100 * std::uint64_t(done) / all));
         std::fflush(stderr);
         shown_ = true;
     }
@@ -105,7 +107,8 @@ std::pair<int, int> parse_size(std::string const& text)
     for (std::size_t i = 0; i < 2; ++i) {
         double const x = number(parts[i], "--size");
         if (x != std::floor(x) || x < 1 || x > RenderTarget::kMaxSize)
-            throw Error(fmt::format("--size: {} is not a whole number from 1 to {}", parts[i], RenderTarget::kMaxSize));
+            throw Error(fmt::format("--size: {} is not a whole number from 1 to {}", parts[i],
+                                    RenderTarget::kMaxSize));
         out[i] = int(x);
     }
     return {out[0], out[1]};
@@ -141,10 +144,12 @@ Camera parse_camera(std::string const& text, ControlMesh const& mesh, float widt
             else if (key == "focal")
                 focal = float(number(value, "--camera focal"));
             else
-                throw Error("--camera: '" + part + "' is not auto, from=, eye=, target=, up= or focal=");
+                throw Error("--camera: '" + part +
+                            "' is not auto, from=, eye=, target=, up= or focal=");
         }
     }
-    if (from.x == 0 && from.y == 0 && from.z == 0) throw Error("--camera: from=0,0,0 is no direction");
+    if (from.x == 0 && from.y == 0 && from.z == 0)
+        throw Error("--camera: from=0,0,0 is no direction");
     Camera camera = frame_points(mesh.positions, from, width_over_height);
     if (target) camera.target = *target;
     if (eye) camera.eye = *eye;
@@ -208,8 +213,9 @@ struct Job {
 };
 
 // Errors about the mesh name the file, and the line where it is known.
-void build(Model& model, Technique const& technique, std::map<std::string, double> const& parameters,
-           PreparedMesh& prepared, std::unique_ptr<PatchMesh>& patches)
+void build(Model& model, Technique const& technique,
+           std::map<std::string, double> const& parameters, PreparedMesh& prepared,
+           std::unique_ptr<PatchMesh>& patches)
 {
     try {
         prepared = prepare_mesh(std::move(model.mesh), technique);
@@ -230,7 +236,8 @@ Job prepare(Options const& o, std::string const& verb)
         throw Error("--partitioning is '" + o.partitioning +
                     "', it must be integer, pow2, fractional_odd or fractional_even");
     if (!(o.tess > 0 && o.tess <= kMaxTessFactor))
-        throw Error(fmt::format("--tess is {}, it must be above 0 and at most {}", o.tess, kMaxTessFactor));
+        throw Error(
+            fmt::format("--tess is {}, it must be above 0 and at most {}", o.tess, kMaxTessFactor));
     if (o.normals != "frozen" && o.normals != "true")
         throw Error("--normals is '" + o.normals + "', it must be frozen or true");
     f.partitioning = *partitioning;
@@ -252,7 +259,8 @@ Job prepare(Options const& o, std::string const& verb)
     h.verb = verb;
     h.inputs = {{model.name, model.sha256}};
     h.warnings = std::move(model.warnings);
-    for (std::vector<std::string> const* more : {&std::as_const(job.prepared.warnings), &job.patches->warnings()})
+    for (std::vector<std::string> const* more :
+         {&std::as_const(job.prepared.warnings), &job.patches->warnings()})
         h.warnings.insert(h.warnings.end(), more->begin(), more->end());
     print_warnings(h.warnings);
     // Warnings of the file carry its path; a result must not.
@@ -281,7 +289,10 @@ void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double 
              {"draw_seconds", seconds}};
 }
 
-std::vector<double> as_doubles(glm::vec3 v) { return {v.x, v.y, v.z}; }
+std::vector<double> as_doubles(glm::vec3 v)
+{
+    return {v.x, v.y, v.z};
+}
 
 int run_draw(Options const& o)
 {
@@ -314,11 +325,13 @@ int run_draw(Options const& o)
     ThreadPool const threads(o.threads);
     ProgressBar bar;
     Stopwatch const clock;
-    Frame const frame = draw_frame(*job.patches, f, threads, [&](std::size_t n, std::size_t all) { bar(n, all); });
+    Frame const frame =
+        draw_frame(*job.patches, f, threads, [&](std::size_t n, std::size_t all) { bar(n, all); });
     bar.clear();
     add_run(job.header, job, threads, clock.seconds());
     if (!o.output.empty()) write_image(frame.target, o.output);
-    if (!o.json.empty()) write_result(o.json, draw_report(job.header, frame.statistics, frame.target));
+    if (!o.json.empty())
+        write_result(o.json, draw_report(job.header, frame.statistics, frame.target));
     if (o.json != "-") fmt::print("{}", counters_table(frame.statistics));
     return 0;
 }
@@ -333,8 +346,8 @@ int run_export(Options const& o)
     Stopwatch const clock;
     std::size_t all = 0, done = 0;
     for (PatchCount const& c : job.patches->patch_counts()) all += c.patches;
-    DrawStatistics const statistics =
-        visit_surface(*job.patches, job.frame, threads, [&](DrawPass const& pass, ShadedPatch const& patch) {
+    DrawStatistics const statistics = visit_surface(
+        *job.patches, job.frame, threads, [&](DrawPass const& pass, ShadedPatch const& patch) {
             writer.add(pass, patch);
             if (++done % 64 == 0) bar(done, all);
         });
@@ -343,7 +356,8 @@ int run_export(Options const& o)
     add_run(job.header, job, threads, clock.seconds());
     if (!o.json.empty()) write_result(o.json, export_report(job.header, statistics, writer));
     if (o.json != "-")
-        fmt::print("{}: {} vertices, {} triangles\n", o.output, writer.vertices(), writer.triangles());
+        fmt::print("{}: {} vertices, {} triangles\n", o.output, writer.vertices(),
+                   writer.triangles());
     return 0;
 }
 
@@ -352,7 +366,8 @@ int run_info(Options const& o)
     Model model = load_model(o.model);
     print_warnings(model.warnings);
     Technique const& technique = find_technique(o.scheme);
-    ReportHeader header{"info", {{"scheme", o.scheme}}, {{model.name, model.sha256}}, model.warnings, {}};
+    ReportHeader header{
+        "info", {{"scheme", o.scheme}}, {{model.name, model.sha256}}, model.warnings, {}};
     MeshSummary summary;
     try {
         summary = summarize(Topology(model.mesh));
@@ -388,7 +403,9 @@ int run_tessellate(Options const& o)
         std::istringstream in(text);
         for (std::string row; std::getline(in, row);) {
             ++line;
-            out += tessellator_answer(run_tessellator_case(parse_tessellator_case(row, o.batch, line))) + "\n";
+            out += tessellator_answer(
+                       run_tessellator_case(parse_tessellator_case(row, o.batch, line))) +
+                   "\n";
         }
         if (o.output.empty())
             fmt::print("{}", out);
@@ -398,10 +415,17 @@ int run_tessellate(Options const& o)
     }
     TessellatorCase c;
     std::string row = o.domain + " " + o.partitioning + " " + o.primitive;
-    for (double f : o.factors) row += fmt::format(" {:08x}", std::bit_cast<std::uint32_t>(float(f)));
+    for (double f : o.factors)
+        row += fmt::format(" {:08x}", std::bit_cast<std::uint32_t>(float(f)));
     c = parse_tessellator_case(row, "tessellate", 0);
-    ReportHeader header{"tessellate", {{"domain", o.domain}, {"partitioning", o.partitioning},
-                                       {"output", o.primitive}, {"factors", o.factors}}, {}, {}, {}};
+    ReportHeader header{"tessellate",
+                        {{"domain", o.domain},
+                         {"partitioning", o.partitioning},
+                         {"output", o.primitive},
+                         {"factors", o.factors}},
+                        {},
+                        {},
+                        {}};
     std::string const json = tessellate_report(header, c, run_tessellator_case(c));
     write_result(o.output.empty() ? "-" : o.output, json);
     return 0;
@@ -430,17 +454,25 @@ int run_models()
 
 void add_surface_options(CLI::App& verb, Options& o)
 {
-    verb.add_option("--scheme", o.scheme, "patch scheme, see 'tessemu schemes'")->capture_default_str();
+    verb.add_option("--scheme", o.scheme, "patch scheme, see 'tessemu schemes'")
+        ->capture_default_str();
     verb.add_option("--set", o.set, "NAME=VALUE: a parameter of the scheme");
-    verb.add_option("--tess", o.tess, "tess factor of every edge and inside, above 0 to 64")->capture_default_str();
-    verb.add_option("--partitioning", o.partitioning, "integer, pow2, fractional_odd, fractional_even")
+    verb.add_option("--tess", o.tess, "tess factor of every edge and inside, above 0 to 64")
         ->capture_default_str();
-    verb.add_option("--normals", o.normals, "inside a patch: frozen (LOOP09 4.4) or true")->capture_default_str();
-    verb.add_option("--contraction", o.contraction, "products that feed sums: none, all, mixed:SEED")
+    verb.add_option("--partitioning", o.partitioning,
+                    "integer, pow2, fractional_odd, fractional_even")
         ->capture_default_str();
-    verb.add_option("--vertex-cache", o.vertex_cache, "none, fifo:N, lru:N, infinite")->capture_default_str();
+    verb.add_option("--normals", o.normals, "inside a patch: frozen (LOOP09 4.4) or true")
+        ->capture_default_str();
+    verb.add_option("--contraction", o.contraction,
+                    "products that feed sums: none, all, mixed:SEED")
+        ->capture_default_str();
+    verb.add_option("--vertex-cache", o.vertex_cache, "none, fifo:N, lru:N, infinite")
+        ->capture_default_str();
     verb.add_option("--lanes", o.lanes, "4, 8 or 16; changes no result")->capture_default_str();
-    verb.add_option("-j", o.threads, "threads; 0: all cores")->check(CLI::Range(0, 1024))->capture_default_str();
+    verb.add_option("-j", o.threads, "threads; 0: all cores")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
     verb.add_option("--json", o.json, "write the result as JSON; '-' is standard output");
 }
 
@@ -454,7 +486,8 @@ int main(int argc, char** argv)
     app.set_version_flag("--version", version);
     app.require_subcommand(1);
     int (*run)(Options const&) = nullptr;
-    auto const verb = [&](char const* name, char const* about, char const* examples, int (*work)(Options const&)) {
+    auto const verb = [&](char const* name, char const* about, char const* examples,
+                          int (*work)(Options const&)) {
         CLI::App* v = app.add_subcommand(name, about);
         v->set_version_flag("--version", version);
         v->footer(std::string("Examples:\n") + examples);
@@ -462,15 +495,18 @@ int main(int argc, char** argv)
         return v;
     };
 
-    CLI::App* draw = verb("draw", "draw a control mesh and count what every stage does",
-                          "  tessemu draw jug -o jug.png\n"
-                          "  tessemu draw cage.obj --tess 16 --view patches -o patches.png --json counters.json\n"
-                          "  tessemu draw cage.obj --camera from=1,0.5,0 --size 1920x1080 -o side.exr",
-                          run_draw);
-    draw->add_option("MODEL", o.model, "OBJ file or built-in cage, see 'tessemu models'")->required();
+    CLI::App* draw = verb(
+        "draw", "draw a control mesh and count what every stage does",
+        "  tessemu draw jug -o jug.png\n"
+        "  tessemu draw cage.obj --tess 16 --view patches -o patches.png --json counters.json\n"
+        "  tessemu draw cage.obj --camera from=1,0.5,0 --size 1920x1080 -o side.exr",
+        run_draw);
+    draw->add_option("MODEL", o.model, "OBJ file or built-in cage, see 'tessemu models'")
+        ->required();
     draw->add_option("-o", o.output, "picture, .png or .exr");
     draw->add_option("--size", o.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
-    draw->add_option("--camera", o.camera, "auto, from=X,Y,Z, or eye=X,Y,Z:target=X,Y,Z:up=X,Y,Z:focal=F")
+    draw->add_option("--camera", o.camera,
+                     "auto, from=X,Y,Z, or eye=X,Y,Z:target=X,Y,Z:up=X,Y,Z:focal=F")
         ->capture_default_str();
     draw->add_option("--view", o.view, "lit, normals, patches, depth")->capture_default_str();
     draw->add_option("--cull", o.cull, "none, back, front")->capture_default_str();
@@ -485,19 +521,24 @@ int main(int argc, char** argv)
     exporter->add_flag("--weld", o.weld, "join vertices with equal bits");
     add_surface_options(*exporter, o);
 
-    CLI::App* tess = verb("tessellate", "run the fixed-function tessellator alone",
-                          "  tessemu tessellate --factors 3 3 3 3 3 3\n"
-                          "  tessemu tessellate --domain tri --partitioning integer --factors 2 2 2 4\n"
-                          "  tessemu tessellate --batch cases.txt > answers.txt",
-                          run_tessellate);
+    CLI::App* tess =
+        verb("tessellate", "run the fixed-function tessellator alone",
+             "  tessemu tessellate --factors 3 3 3 3 3 3\n"
+             "  tessemu tessellate --domain tri --partitioning integer --factors 2 2 2 4\n"
+             "  tessemu tessellate --batch cases.txt > answers.txt",
+             run_tessellate);
     tess->add_option("--domain", o.domain, "quad, tri, isoline")->capture_default_str();
-    tess->add_option("--partitioning", o.partitioning, "integer, pow2, fractional_odd, fractional_even")
+    tess->add_option("--partitioning", o.partitioning,
+                     "integer, pow2, fractional_odd, fractional_even")
         ->capture_default_str();
-    tess->add_option("--output", o.primitive, "point, line, triangle_cw, triangle_ccw")->capture_default_str();
-    CLI::Option* factors = tess->add_option("--factors", o.factors,
-                                            "quad: edges u=0 v=0 u=1 v=1, inside u v; tri: u=0 v=0 w=0, inside; "
-                                            "isoline: density, detail");
-    CLI::Option* batch = tess->add_option("--batch", o.batch, "file of cases, one a line; '-' is standard input");
+    tess->add_option("--output", o.primitive, "point, line, triangle_cw, triangle_ccw")
+        ->capture_default_str();
+    CLI::Option* factors =
+        tess->add_option("--factors", o.factors,
+                         "quad: edges u=0 v=0 u=1 v=1, inside u v; tri: u=0 v=0 w=0, inside; "
+                         "isoline: density, detail");
+    CLI::Option* batch =
+        tess->add_option("--batch", o.batch, "file of cases, one a line; '-' is standard input");
     factors->excludes(batch);
     tess->add_option("-o,--json", o.output, "file for the result instead of standard output");
 
@@ -507,8 +548,10 @@ int main(int argc, char** argv)
     info->add_option("--scheme", o.scheme, "patch scheme")->capture_default_str();
     info->add_option("--json", o.json, "write the result as JSON; '-' is standard output");
 
-    verb("schemes", "list the patch schemes", "  tessemu schemes", [](Options const&) { return run_schemes(); });
-    verb("models", "list the built-in control meshes", "  tessemu models", [](Options const&) { return run_models(); });
+    verb("schemes", "list the patch schemes", "  tessemu schemes",
+         [](Options const&) { return run_schemes(); });
+    verb("models", "list the built-in control meshes", "  tessemu models",
+         [](Options const&) { return run_models(); });
 
     // A verb that needs an argument, given none, shows its help.
     if (argc == 1) {

@@ -1,10 +1,11 @@
-// Contracted<T, Policy>: a scalar on which products that feed sums may be fused, as shader compilers do.
+// Contracted<T, Policy>: a scalar on which products that feed sums may be fused, as shader
+// compilers do.
 //
-// A product is a proxy; a sum that meets one becomes a multiply-add with one rounding, anything else
-// rounds it. Policy All fuses each; Mixed decides site by site from a seed. A site is a place in the
-// source: loop<T>() makes every turn of a loop the same sites, Routine<T> makes a shared function
-// number its sums from its own start for every caller, and when() numbers a branch whether or not it
-// is taken.
+// A product is a proxy; a sum that meets one becomes a multiply-add with one rounding, anything
+// else rounds it. Policy All fuses each; Mixed decides site by site from a seed. A site is a place
+// in the source: loop<T>() makes every turn of a loop the same sites, Routine<T> makes a shared
+// function number its sums from its own start for every caller, and when() numbers a branch whether
+// or not it is taken.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -31,7 +32,8 @@ constexpr std::uint64_t mix(std::uint64_t a, std::uint64_t b)
 }
 } // namespace detail
 
-/// Numbers the sites of a piece of source that is entered here, and restores the caller's numbering.
+/// Numbers the sites of a piece of source that is entered here, and restores the caller's
+/// numbering.
 template <class T> class SiteScope {
 public:
     SiteScope() { enter(detail::mix(site_state.scope, site_state.next)); }
@@ -87,14 +89,10 @@ template <class T, class Policy> struct Contracted {
 
     Contracted() = default;
     Contracted(T v) : value(v) {}
-    Contracted(float v)
-        requires(!std::same_as<T, float>)
-        : value(v)
-    {}
-    explicit Contracted(int_of<T> i)
-        requires(!std::same_as<int_of<T>, std::int32_t>)
-        : value(T(i))
-    {}
+    Contracted(float v) requires(!std::same_as<T, float>) : value(v) {}
+    explicit Contracted(int_of<T> i) requires(!std::same_as<int_of<T>, std::int32_t>) : value(T(i))
+    {
+    }
 
     friend Product operator*(Contracted a, Contracted b) { return {a.value, b.value}; }
 
@@ -142,9 +140,21 @@ template <class T, class Policy> struct ScalarTraits<Contracted<T, Policy>> : Sc
 };
 
 /// The lanes (or the number) inside a scalar's wrappers.
-template <int N> Lanes<N> lanes_value(Lanes<N> x) { return x; }
-inline float lanes_value(float x) { return x; }
-template <class T> auto lanes_value(Counted<T> x) { return lanes_value(x.value); }
-template <class T, class P> auto lanes_value(Contracted<T, P> x) { return lanes_value(x.value); }
+template <int N> Lanes<N> lanes_value(Lanes<N> x)
+{
+    return x;
+}
+inline float lanes_value(float x)
+{
+    return x;
+}
+template <class T> auto lanes_value(Counted<T> x)
+{
+    return lanes_value(x.value);
+}
+template <class T, class P> auto lanes_value(Contracted<T, P> x)
+{
+    return lanes_value(x.value);
+}
 
 } // namespace tessemu

@@ -1,7 +1,7 @@
 // Control flow of a shader: a branch on a mask, a loop, a shared routine.
 //
-// Lanes never branch; when() runs a piece of work for the lanes that need it, skips it when none does
-// and counts the masked lanes only. On scalar machines it is an if.
+// Lanes never branch; when() runs a piece of work for the lanes that need it, skips it when none
+// does and counts the masked lanes only. On scalar machines it is an if.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -17,8 +17,7 @@ template <ShaderScalar T> struct ScalarIn<T> {
     using type = T;
 };
 template <template <class> class R, class T>
-    requires(!ShaderScalar<R<T>>)
-struct ScalarIn<R<T>> {
+requires(!ShaderScalar<R<T>>) struct ScalarIn<R<T>> {
     using type = T;
 };
 
@@ -49,9 +48,9 @@ template <class M, class Work, class V> V masked(M mask, Work&& work, V const& o
 }
 } // namespace detail
 
-/// `work()` in the lanes of `mask`, `otherwise` in the rest; work under a mask counts its lanes only.
-template <class M, class Work, class V>
-constexpr V when(M mask, Work&& work, V const& otherwise)
+/// `work()` in the lanes of `mask`, `otherwise` in the rest; work under a mask counts its lanes
+/// only.
+template <class M, class Work, class V> constexpr V when(M mask, Work&& work, V const& otherwise)
 {
     using T = scalar_of<V>;
     if constexpr (ScalarTraits<T>::kTally) {
@@ -96,15 +95,20 @@ private:
 } // namespace detail
 
 /// for (int i : loop<T>(n)): 0 to n-1; every turn is the same place in the source.
-template <class T> constexpr detail::Loop<T> loop(int n) { return detail::Loop<T>(n); }
+template <class T> constexpr detail::Loop<T> loop(int n)
+{
+    return detail::Loop<T>(n);
+}
 
-/// unrolled<n>(body): body(0), ..., body(n-1) with the index a constant, as a shader compiler unrolls; each
-/// turn is a place in the source of its own.
+/// unrolled<n>(body): body(0), ..., body(n-1) with the index a constant, as a shader compiler
+/// unrolls; each turn is a place in the source of its own.
 template <int kTurns, class Body> constexpr void unrolled(Body&& body)
 {
-    [&]<int... i>(std::integer_sequence<int, i...>) {
+    [&]<int... i>(std::integer_sequence<int, i...>)
+    {
         (body(std::integral_constant<int, i>()), ...);
-    }(std::make_integer_sequence<int, kTurns>());
+    }
+    (std::make_integer_sequence<int, kTurns>());
 }
 
 /// Declared first in a routine that several shaders share: one compiled routine, so a contraction

@@ -1,7 +1,8 @@
-// Counted<T>: a scalar whose operators count, and the thread's execution state that the counts go to.
+// Counted<T>: a scalar whose operators count, and the thread's execution state that the counts go
+// to.
 //
-// One operation of a group counts once in `pending`; when the set of active lanes changes, pending is
-// multiplied by the number of active lanes and moved to `total`. So a count never depends on how
+// One operation of a group counts once in `pending`; when the set of active lanes changes, pending
+// is multiplied by the number of active lanes and moved to `total`. So a count never depends on how
 // invocations were grouped into lanes, and straight-line code costs a few additions per group.
 //
 // SPDX-License-Identifier: Apache-2.0
@@ -33,7 +34,10 @@ struct FlopCount {
 };
 
 /// LOOP10's convention: multiplications and divisions count, additions do not.
-constexpr std::uint64_t flops_loop10(FlopCount const& c) { return c.mul + c.mad + c.div; }
+constexpr std::uint64_t flops_loop10(FlopCount const& c)
+{
+    return c.mul + c.mad + c.div;
+}
 
 /// Fetches of one resource by one thread.
 struct FetchSlot;
@@ -68,14 +72,8 @@ template <class T> struct Counted {
 
     Counted() = default;
     Counted(T v) : value(v) {}
-    Counted(float v)
-        requires(!std::same_as<T, float>)
-        : value(v)
-    {}
-    explicit Counted(int_of<T> i)
-        requires(!std::same_as<int_of<T>, std::int32_t>)
-        : value(T(i))
-    {}
+    Counted(float v) requires(!std::same_as<T, float>) : value(v) {}
+    explicit Counted(int_of<T> i) requires(!std::same_as<int_of<T>, std::int32_t>) : value(T(i)) {}
 
     friend Counted operator+(Counted a, Counted b)
     {

@@ -50,7 +50,8 @@ public:
     virtual int output_floats() const = 0;
     virtual std::vector<ResourceInfo> resources() const = 0;
     /// Runs a patch. `patch_constants` says how many registers the hull shader wrote.
-    virtual void run(DomainBatch const& batch, int patch_constants, StageCounters& counters) const = 0;
+    virtual void run(DomainBatch const& batch, int patch_constants,
+                     StageCounters& counters) const = 0;
     /// The contraction seed of the stage's door.
     virtual std::uint64_t seed() const = 0;
 };
@@ -71,7 +72,8 @@ public:
     std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
     std::uint64_t seed() const override { return seed_; }
 
-    // Flattened: only where shader and views are one function do the counts fold to a few additions.
+    // Flattened: only where shader and views are one function do the counts fold to a few
+    // additions.
     [[gnu::flatten]] void run(DomainBatch const& b, int patch_constants,
                               StageCounters& counters) const override
     {

@@ -19,16 +19,21 @@ struct LimitError : Error {
     LimitError(std::string const& thing, std::uint64_t value_, std::uint64_t limit_)
         : Error(thing + " is " + std::to_string(value_) + ", the limit is " +
                 std::to_string(limit_)),
-          value(value_), limit(limit_)
-    {}
+          value(value_),
+          limit(limit_)
+    {
+    }
     std::uint64_t value, limit;
 };
 
 /// A file cannot be read or holds something that is not valid.
 struct FormatError : Error {
     FormatError(std::string const& file_, int line_, std::string const& what)
-        : Error(message(file_, line_, what)), file(file_), line(line_)
-    {}
+        : Error(message(file_, line_, what)),
+          file(file_),
+          line(line_)
+    {
+    }
     std::string file;
     int line; ///< counted from 1; 0: the whole file
 

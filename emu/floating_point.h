@@ -1,9 +1,9 @@
 // Floating-point environment of a stage: IEEE arithmetic, denormals kept or flushed.
 //
-// Bit-exact results need three compiler flags, PUBLIC on the CMake target (contraction off, no errno,
-// no traps), and no fast-math. D3D11 flushes denormals at every arithmetic operation of a shader
-// (rule R9); the fixed-function tessellator is defined on plain IEEE numbers. The mode belongs to the
-// thread, so every worker sets it at the stage's door and restores it on leaving.
+// Bit-exact results need three compiler flags, PUBLIC on the CMake target (contraction off, no
+// errno, no traps), and no fast-math. D3D11 flushes denormals at every arithmetic operation of a
+// shader (rule R9); the fixed-function tessellator is defined on plain IEEE numbers. The mode
+// belongs to the thread, so every worker sets it at the stage's door and restores it on leaving.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

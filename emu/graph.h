@@ -1,8 +1,8 @@
 // Graph: a scalar that records the expression it belongs to, with equal subexpressions shared.
 //
-// Papers quote instruction counts of compiled shaders. The graph gives the two figures between which
-// a compiler lands: operations as written, and unique operations with products that feed exactly one
-// sum fused into multiply-adds.
+// Papers quote instruction counts of compiled shaders. The graph gives the two figures between
+// which a compiler lands: operations as written, and unique operations with products that feed
+// exactly one sum fused into multiply-adds.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -129,15 +129,24 @@ private:
     static double fold(Op op, double a, double b)
     {
         switch (op) {
-        case Op::Add: return a + b;
-        case Op::Sub: return a - b;
-        case Op::Mul: return a * b;
-        case Op::Div: return a / b;
-        case Op::Neg: return -a;
-        case Op::Sqrt: return sqrt(a);
-        case Op::Min: return min(a, b);
-        case Op::Max: return max(a, b);
-        default: return 0;
+        case Op::Add:
+            return a + b;
+        case Op::Sub:
+            return a - b;
+        case Op::Mul:
+            return a * b;
+        case Op::Div:
+            return a / b;
+        case Op::Neg:
+            return -a;
+        case Op::Sqrt:
+            return sqrt(a);
+        case Op::Min:
+            return min(a, b);
+        case Op::Max:
+            return max(a, b);
+        default:
+            return 0;
         }
     }
 };

@@ -32,7 +32,8 @@ GraphicsPipeline::GraphicsPipeline(GraphicsPipelineDesc desc) : desc_(std::move(
     require((d.hull_shader == nullptr) == (d.domain_shader == nullptr),
             "hull shader and domain shader must be bound together (R3)");
     check_limit("vertex shader input scalars", d.vertex_shader->input_floats(), 4 * kMaxRegisters);
-    check_limit("vertex shader output scalars", d.vertex_shader->output_floats(), 4 * kMaxRegisters);
+    check_limit("vertex shader output scalars", d.vertex_shader->output_floats(),
+                4 * kMaxRegisters);
 
     int shaded = d.vertex_shader->output_floats();
     if (d.hull_shader) {
@@ -74,7 +75,10 @@ constexpr std::size_t kTrianglesPerChunk = 512; // of a draw without tessellatio
 constexpr std::size_t kChunksPerWave = 64;
 constexpr std::size_t kPadding = 16; // whole groups of lanes are written
 
-std::size_t padded(std::size_t n) { return (n + kPadding - 1) / kPadding * kPadding; }
+std::size_t padded(std::size_t n)
+{
+    return (n + kPadding - 1) / kPadding * kPadding;
+}
 
 // The work of one chunk: a few patches from control points to binned triangles.
 struct Chunk {
@@ -97,19 +101,27 @@ class Drawing {
 public:
     Drawing(GraphicsPipeline const& pipeline, DrawCall const& call, RasterTarget const* raster,
             PatchVisitor const& visit, ThreadPool const& threads, DrawOptions const& options)
-        : d_(pipeline.desc()), call_(call), raster_(raster), visit_(visit), threads_(threads),
-          options_(options), vs_buffers_(d_.vertex_shader->resources()),
+        : d_(pipeline.desc()),
+          call_(call),
+          raster_(raster),
+          visit_(visit),
+          threads_(threads),
+          options_(options),
+          vs_buffers_(d_.vertex_shader->resources()),
           hs_buffers_(d_.hull_shader ? d_.hull_shader->resources() : std::vector<ResourceInfo>{}),
-          ds_buffers_(d_.domain_shader ? d_.domain_shader->resources() : std::vector<ResourceInfo>{}),
+          ds_buffers_(d_.domain_shader ? d_.domain_shader->resources()
+                                       : std::vector<ResourceInfo>{}),
           ps_buffers_(d_.pixel_shader ? d_.pixel_shader->resources() : std::vector<ResourceInfo>{})
     {
         if (!raster_) return;
         Viewport const& v = raster_->viewport;
         // Implicit scissor: sums first, then floor (R98).
-        Rect const implied{int(std::floor(v.x)), int(std::floor(v.y)), int(std::floor(v.x + v.width)),
-                           int(std::floor(v.y + v.height))};
-        bounds_ = Rect{0, 0, raster_->target->width(), raster_->target->height()}.intersect(implied);
-        if (raster_->rasterizer.scissor_enable) bounds_ = bounds_.intersect(raster_->rasterizer.scissor);
+        Rect const implied{int(std::floor(v.x)), int(std::floor(v.y)),
+                           int(std::floor(v.x + v.width)), int(std::floor(v.y + v.height))};
+        bounds_ =
+            Rect{0, 0, raster_->target->width(), raster_->target->height()}.intersect(implied);
+        if (raster_->rasterizer.scissor_enable)
+            bounds_ = bounds_.intersect(raster_->rasterizer.scissor);
         tiles_x_ = (raster_->target->width() + kTileSize - 1) / kTileSize;
         tiles_y_ = (raster_->target->height() + kTileSize - 1) / kTileSize;
     }
@@ -158,7 +170,8 @@ private:
             // A vertex that runs twice in a block writes the same bits twice; two threads must not
             // write them at once, so repeats move to the next block.
             threads_.parallel_for(pieces, [&](std::size_t i) {
-                auto const piece = std::span(ids).subspan(i * kPiece, std::min(kPiece, ids.size() - i * kPiece));
+                auto const piece =
+                    std::span(ids).subspan(i * kPiece, std::min(kPiece, ids.size() - i * kPiece));
                 vs.run(piece, call_.vertices, shaded_vertices_.data(), counters[i], vs_buffers_);
             });
             for (std::size_t i = 0; i < pieces; ++i) vertex_ += counters[i];
@@ -215,13 +228,16 @@ private:
 
         int const components = d_.domain_shader ? d_.domain_shader->output_floats()
                                                 : d_.vertex_shader->output_floats();
-        project_vertices(raster_->viewport, c.shaded.data(), c.stride, c.stride, components, c.assembled);
-        auto const assemble = [&](std::uint32_t a, std::uint32_t b, std::uint32_t e, std::size_t id) {
+        project_vertices(raster_->viewport, c.shaded.data(), c.stride, c.stride, components,
+                         c.assembled);
+        auto const assemble = [&](std::uint32_t a, std::uint32_t b, std::uint32_t e,
+                                  std::size_t id) {
             assemble_triangle(raster_->rasterizer, raster_->viewport, c.assembled, a, b, e,
                               std::int32_t(id), c.assembly, c.triangles);
         };
         if (!d_.hull_shader) {
-            for (std::uint32_t t = 0; t < count; ++t) assemble(3 * t, 3 * t + 1, 3 * t + 2, first + t);
+            for (std::uint32_t t = 0; t < count; ++t)
+                assemble(3 * t, 3 * t + 1, 3 * t + 2, first + t);
         } else if (d_.output_primitive != OutputPrimitive::Point) {
             for (std::size_t p = 0; p < count; ++p) {
                 auto const base = std::uint32_t(c.first_point[p]);
@@ -237,8 +253,10 @@ private:
     {
         HullProgram const& hs = *d_.hull_shader;
         DomainProgram const& ds = *d_.domain_shader;
-        std::size_t const point_floats = std::size_t(hs.control_points() * hs.control_point_floats());
-        std::size_t const constant_floats = std::size_t(hs.patch_constants() * hs.patch_constant_floats());
+        std::size_t const point_floats =
+            std::size_t(hs.control_points() * hs.control_point_floats());
+        std::size_t const constant_floats =
+            std::size_t(hs.patch_constants() * hs.patch_constant_floats());
         c.control_points.resize(count * point_floats);
         c.patch_constants.resize(count * constant_floats);
         c.factors.resize(count);
@@ -280,7 +298,8 @@ private:
         c.stride = padded(3 * count);
         c.shaded.assign(c.stride * out, 0.0f);
         for (std::size_t i = 0; i < 3 * count; ++i) {
-            float const* const v = shaded_vertices_.data() + primitives_.vertices[3 * first + i] * out;
+            float const* const v =
+                shaded_vertices_.data() + primitives_.vertices[3 * first + i] * out;
             for (std::size_t k = 0; k < out; ++k) c.shaded[k * c.stride + i] = v[k];
         }
     }
@@ -294,10 +313,12 @@ private:
             std::uint32_t const* v = c.triangles[i].v;
             auto const& X = c.assembled.x;
             auto const& Y = c.assembled.y;
-            int const left = std::max(bounds_.left, (std::min({X[v[0]], X[v[1]], X[v[2]]}) + 127) >> 8);
+            int const left =
+                std::max(bounds_.left, (std::min({X[v[0]], X[v[1]], X[v[2]]}) + 127) >> 8);
             int const right =
                 std::min(bounds_.right - 1, (std::max({X[v[0]], X[v[1]], X[v[2]]}) - 129) >> 8);
-            int const top = std::max(bounds_.top, (std::min({Y[v[0]], Y[v[1]], Y[v[2]]}) + 127) >> 8);
+            int const top =
+                std::max(bounds_.top, (std::min({Y[v[0]], Y[v[1]], Y[v[2]]}) + 127) >> 8);
             int const bottom =
                 std::min(bounds_.bottom - 1, (std::max({Y[v[0]], Y[v[1]], Y[v[2]]}) - 129) >> 8);
             if (left > right || top > bottom) continue; // covers no pixel centre
@@ -323,8 +344,8 @@ private:
         stats_.pipeline.CPrimitives += c.assembly.clip_primitives;
         if (!visit_ || !d_.hull_shader) return;
         for (std::size_t p = 0; p < c.hull.invocations; ++p)
-            visit_({std::uint32_t(first + p), c.patterns[p].get(), c.shaded.data() + c.first_point[p],
-                    c.stride});
+            visit_({std::uint32_t(first + p), c.patterns[p].get(),
+                    c.shaded.data() + c.first_point[p], c.stride});
     }
 
     void rasterize(std::span<Chunk> wave)
@@ -376,18 +397,20 @@ private:
     void report()
     {
         PipelineStatistics& p = stats_.pipeline;
-        auto const add = [&](char const* name, std::uint64_t invocations, StageCounters const& c) -> StageStatistics& {
+        auto const add = [&](char const* name, std::uint64_t invocations,
+                             StageCounters const& c) -> StageStatistics& {
             stats_.stages.push_back({name, invocations, c.flops, {}, 0});
             return stats_.stages.back();
         };
-        auto const fetch = [](StageStatistics& s, char const* name, ResourceKind kind, std::uint64_t n,
-                              std::uint64_t unique, std::size_t bytes) {
+        auto const fetch = [](StageStatistics& s, char const* name, ResourceKind kind,
+                              std::uint64_t n, std::uint64_t unique, std::size_t bytes) {
             s.fetches.push_back({name, kind, n, n * bytes, unique * bytes});
         };
 
         StageStatistics& ia = add("input_assembler", p.IAPrimitives, {});
         if (primitives_.index_bytes)
-            fetch(ia, "indices", ResourceKind::Index, p.IAVertices, p.IAVertices, primitives_.index_bytes);
+            fetch(ia, "indices", ResourceKind::Index, p.IAVertices, p.IAVertices,
+                  primitives_.index_bytes);
 
         VertexProgram const& vs = *d_.vertex_shader;
         StageStatistics& v = add("vertex_shader", vertex_.invocations, vertex_);
@@ -401,9 +424,11 @@ private:
             DomainProgram const& ds = *d_.domain_shader;
             p.HSInvocations = hull_.invocations;
             p.HSControlPointInvocations = hull_.invocations * std::uint64_t(hs.control_points());
-            p.HSPatchConstantInvocations = hull_.invocations * std::uint64_t(hs.patch_constants() + 1);
+            p.HSPatchConstantInvocations =
+                hull_.invocations * std::uint64_t(hs.patch_constants() + 1);
             std::size_t const point_bytes = std::size_t(hs.control_point_floats()) * sizeof(float);
-            std::size_t const constant_bytes = std::size_t(hs.patch_constant_floats()) * sizeof(float);
+            std::size_t const constant_bytes =
+                std::size_t(hs.patch_constant_floats()) * sizeof(float);
             StageStatistics& h = add("hull_shader", hull_.invocations, hull_);
             fetch(h, "input_control_points", ResourceKind::ControlPoint, hull_.input_fetches,
                   hull_.input_touched, std::size_t(hs.input_floats()) * sizeof(float));
@@ -414,13 +439,14 @@ private:
                 fetch(h, "patch_constants", ResourceKind::PatchConstant, hull_.constant_fetches,
                       hull_.constant_touched, constant_bytes);
             hs_buffers_.report(hull_, h);
-            h.output_bytes = hull_.invocations *
-                             (std::uint64_t(hs.control_points()) * point_bytes +
-                              std::uint64_t(hs.patch_constants()) * constant_bytes +
-                              std::uint64_t(tess_factor_count(hs.domain())) * sizeof(float));
+            h.output_bytes =
+                hull_.invocations * (std::uint64_t(hs.control_points()) * point_bytes +
+                                     std::uint64_t(hs.patch_constants()) * constant_bytes +
+                                     std::uint64_t(tess_factor_count(hs.domain())) * sizeof(float));
 
             StageStatistics& t = add("tessellator", hull_.invocations, {});
-            t.output_bytes = tessellated_points_ * 2 * sizeof(float) + tessellated_indices_ * sizeof(std::uint32_t);
+            t.output_bytes = tessellated_points_ * 2 * sizeof(float) +
+                             tessellated_indices_ * sizeof(std::uint32_t);
 
             p.DSInvocations = domain_.invocations;
             StageStatistics& s = add("domain_shader", domain_.invocations, domain_);
@@ -429,7 +455,8 @@ private:
             fetch(s, "patch_constants", ResourceKind::PatchConstant, domain_.constant_fetches,
                   domain_.constant_touched, constant_bytes);
             ds_buffers_.report(domain_, s);
-            s.output_bytes = domain_.invocations * std::uint64_t(ds.output_floats()) * sizeof(float);
+            s.output_bytes =
+                domain_.invocations * std::uint64_t(ds.output_floats()) * sizeof(float);
         }
         if (!raster_) return;
         StageStatistics& r = add("rasterizer", p.CPrimitives, {});
@@ -466,8 +493,8 @@ private:
 } // namespace
 
 DrawStatistics draw(GraphicsPipeline const& pipeline, DrawCall const& call,
-                    RasterTarget const* raster, PatchVisitor const& visit, ThreadPool const& threads,
-                    DrawOptions const& options)
+                    RasterTarget const* raster, PatchVisitor const& visit,
+                    ThreadPool const& threads, DrawOptions const& options)
 {
     GraphicsPipelineDesc const& d = pipeline.desc();
     require(call.vertex_floats == d.vertex_shader->input_floats(),

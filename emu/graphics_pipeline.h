@@ -1,6 +1,7 @@
 // The pipeline: stages bound together, checked against Direct3D 11's limits, and drawn with.
 //
-//     IA -> vertex cache -> VS -> HS -> tessellator -> DS -> (GS, SO) -> assembly -> raster -> PS -> OM
+//     IA -> vertex cache -> VS -> HS -> tessellator -> DS -> (GS, SO) -> assembly -> raster -> PS
+//     -> OM
 //
 // Results equal serial execution in submission order, whatever the number of threads (R1). A draw
 // streams patches in waves, so memory does not grow with the number of patches. Geometry shader,
@@ -33,8 +34,8 @@ struct GraphicsPipelineDesc {
 
 class GraphicsPipeline {
 public:
-    /// Checks what D3D11 checks when a pipeline is created. Throws LimitError or Error that names the
-    /// stage, the value and the limit.
+    /// Checks what D3D11 checks when a pipeline is created. Throws LimitError or Error that names
+    /// the stage, the value and the limit.
     explicit GraphicsPipeline(GraphicsPipelineDesc desc);
     GraphicsPipelineDesc const& desc() const { return desc_; }
 
@@ -71,7 +72,7 @@ struct DrawOptions {
 /// Draws. Either part may be absent: without `raster` rasterization is off, without `visit` nobody
 /// looks at the patches.
 DrawStatistics draw(GraphicsPipeline const& pipeline, DrawCall const& call,
-                    RasterTarget const* raster, PatchVisitor const& visit, ThreadPool const& threads,
-                    DrawOptions const& options = {});
+                    RasterTarget const* raster, PatchVisitor const& visit,
+                    ThreadPool const& threads, DrawOptions const& options = {});
 
 } // namespace tessemu

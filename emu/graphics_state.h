@@ -36,8 +36,8 @@ struct RasterizerState {
     Rect scissor;
 };
 
-/// Colour (four 32-bit floats) and depth (32-bit float), rows from the top, cleared to `clear_color`
-/// and 1.
+/// Colour (four 32-bit floats) and depth (32-bit float), rows from the top, cleared to
+/// `clear_color` and 1.
 class RenderTarget {
 public:
     /// Throws LimitError outside 1 to 16384 pixels an axis (R112 asks for 2^15 addressable; D3D11's

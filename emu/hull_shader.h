@@ -19,8 +19,8 @@
 //             ControlPoints<PatchConstant<T>> const&) const;
 //     };
 //
-// The control-point phase runs once per output control point, the fork phase once per instance, both
-// with lanes across the ids of one patch; tess_factors is the join phase (rules R45 to R52).
+// The control-point phase runs once per output control point, the fork phase once per instance,
+// both with lanes across the ids of one patch; tess_factors is the join phase (rules R45 to R52).
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -86,7 +86,8 @@ public:
     int patch_constant_floats() const override { return int(kConst); }
     std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
 
-    void run(HullBatch const& b, StageCounters& counters, StageBuffers const& buffers) const override
+    void run(HullBatch const& b, StageCounters& counters,
+             StageBuffers const& buffers) const override
     {
         StageScope const scope(counters, buffers, seed_);
         int const n = b.input_control_points;

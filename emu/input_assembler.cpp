@@ -10,13 +10,14 @@ namespace tessemu {
 namespace {
 
 template <class Index>
-void assemble_indexed(std::span<Index const> indices, DrawCall const& call, AssembledPrimitives& out)
+void assemble_indexed(std::span<Index const> indices, DrawCall const& call,
+                      AssembledPrimitives& out)
 {
     constexpr Index kCut = std::numeric_limits<Index>::max();
     out.index_bytes = sizeof(Index);
     std::size_t const n = out.vertices_per_primitive;
-    bool const plain = call.base_vertex == 0 &&
-                       std::find(indices.begin(), indices.end(), kCut) == indices.end();
+    bool const plain =
+        call.base_vertex == 0 && std::find(indices.begin(), indices.end(), kCut) == indices.end();
     if constexpr (sizeof(Index) == 4) {
         if (plain) {
             out.vertices = indices.first(indices.size() / n * n);

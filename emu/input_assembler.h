@@ -27,7 +27,8 @@ struct DrawCall {
     std::int32_t base_vertex = 0;   ///< added to each index (R32)
 };
 
-/// Complete primitives; partial ones at a cut or at the end are dropped (R29) and not counted (I-23).
+/// Complete primitives; partial ones at a cut or at the end are dropped (R29) and not counted
+/// (I-23).
 struct AssembledPrimitives {
     std::vector<std::uint32_t> storage;
     std::span<std::uint32_t const> vertices; ///< vertex ids, primitive after primitive

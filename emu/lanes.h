@@ -1,8 +1,9 @@
-// Lanes<N>: one float per shader invocation, N invocations in step, on the compilers' vector extension.
+// Lanes<N>: one float per shader invocation, N invocations in step, on the compilers' vector
+// extension.
 //
-// Mask<N> is the result of a comparison and is not a bool: a shader cannot branch on lanes, it selects.
-// IntLanes<N> holds indices. Every operation is the IEEE one lane by lane, so a lane's bits do not
-// depend on N.
+// Mask<N> is the result of a comparison and is not a bool: a shader cannot branch on lanes, it
+// selects. IntLanes<N> holds indices. Every operation is the IEEE one lane by lane, so a lane's
+// bits do not depend on N.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -56,8 +57,14 @@ template <int N> struct Mask {
         for (int i = 0; i < N; ++i) r[i] = i < n ? -1 : 0;
         return r;
     }
-    friend bool any(Mask m) { return m.bits() != 0; }
-    friend bool all(Mask m) { return m.bits() == (N == 32 ? ~0u : (1u << N) - 1); }
+    friend bool any(Mask m)
+    {
+        return m.bits() != 0;
+    }
+    friend bool all(Mask m)
+    {
+        return m.bits() == (N == 32 ? ~0u : (1u << N) - 1);
+    }
 };
 
 template <int N> struct IntLanes {

@@ -1,4 +1,5 @@
-// The machine a shader runs on: lanes, contraction, and the table that turns both into a scalar type.
+// The machine a shader runs on: lanes, contraction, and the table that turns both into a scalar
+// type.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -33,8 +34,10 @@ std::unique_ptr<Interface> make_program_on(Shader const& shader, Machine const& 
     case Contraction::All:
         return std::make_unique<Program<Shader, Contracted<T, policy::All>>>(shader, machine.seed);
     case Contraction::Mixed:
-        return std::make_unique<Program<Shader, Contracted<T, policy::Mixed>>>(shader, machine.seed);
-    default: return std::make_unique<Program<Shader, T>>(shader, machine.seed);
+        return std::make_unique<Program<Shader, Contracted<T, policy::Mixed>>>(shader,
+                                                                               machine.seed);
+    default:
+        return std::make_unique<Program<Shader, T>>(shader, machine.seed);
     }
 }
 } // namespace detail
@@ -44,10 +47,14 @@ template <template <class, class> class Program, class Interface, class Shader>
 std::unique_ptr<Interface> make_program(Shader const& shader, Machine const& machine)
 {
     switch (machine.lanes) {
-    case 4: return detail::make_program_on<Program, Interface, Shader, 4>(shader, machine);
-    case 8: return detail::make_program_on<Program, Interface, Shader, 8>(shader, machine);
-    case 16: return detail::make_program_on<Program, Interface, Shader, 16>(shader, machine);
-    default: throw Error("lanes is " + std::to_string(machine.lanes) + ", it must be 4, 8 or 16");
+    case 4:
+        return detail::make_program_on<Program, Interface, Shader, 4>(shader, machine);
+    case 8:
+        return detail::make_program_on<Program, Interface, Shader, 8>(shader, machine);
+    case 16:
+        return detail::make_program_on<Program, Interface, Shader, 16>(shader, machine);
+    default:
+        throw Error("lanes is " + std::to_string(machine.lanes) + ", it must be 4, 8 or 16");
     }
 }
 

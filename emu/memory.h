@@ -22,8 +22,8 @@ enum class ResourceKind { Vertex, Index, ControlPoint, PatchConstant, Buffer, Te
 /// "vertex", "index", "control_point", "patch_constant", "buffer", "texture"
 char const* name_of(ResourceKind kind);
 
-/// What a stage read of one resource. unique_bytes counts each element once per draw (control points
-/// and patch constants: once per patch and stage run).
+/// What a stage read of one resource. unique_bytes counts each element once per draw (control
+/// points and patch constants: once per patch and stage run).
 struct FetchStatistics {
     std::string resource;
     ResourceKind kind = ResourceKind::Buffer;
@@ -83,8 +83,7 @@ template <class T> void count_fetch(int slot, std::int32_t index, std::size_t si
         if (s.touched && std::size_t(index) < size) s.touched->mark(std::size_t(index));
     }
 }
-template <class T, int N>
-void count_fetch(int slot, IntLanes<N> index, std::size_t size)
+template <class T, int N> void count_fetch(int slot, IntLanes<N> index, std::size_t size)
 {
     if constexpr (ScalarTraits<T>::kCounted) {
         if (!execution.buffers) return;
@@ -104,7 +103,9 @@ template <class E> class Buffer {
 public:
     Buffer() = default;
     Buffer(std::span<E const> elements, int slot, std::string name)
-        : elements_(elements), slot_(slot), name_(std::move(name))
+        : elements_(elements),
+          slot_(slot),
+          name_(std::move(name))
     {
         assert(slot >= 0 && slot < kBufferSlots);
     }
@@ -158,7 +159,11 @@ class Texture2D {
 public:
     Texture2D() = default;
     Texture2D(std::span<float const> texels, int width, int height, int slot, std::string name)
-        : texels_(texels), width_(width), height_(height), slot_(slot), name_(std::move(name))
+        : texels_(texels),
+          width_(width),
+          height_(height),
+          slot_(slot),
+          name_(std::move(name))
     {
         assert(texels.size() == std::size_t(width) * std::size_t(height) * 4);
     }
@@ -200,13 +205,14 @@ template <class T> float4<T> load(Texture2D const& texture, int_of<T> x, int_of<
         Lanes<N> c[4] = {0.0f, 0.0f, 0.0f, 0.0f};
         for (int k = 0; k < N; ++k)
             for (int m = 0; m < 4; ++m)
-                if (index.raw[k] >= 0) c[m].raw[k] = data[4 * std::size_t(index.raw[k]) + std::size_t(m)];
+                if (index.raw[k] >= 0)
+                    c[m].raw[k] = data[4 * std::size_t(index.raw[k]) + std::size_t(m)];
         return {T(c[0]), T(c[1]), T(c[2]), T(c[3])};
     }
 }
 
-/// Records of one patch (HLSL: InputPatch, OutputPatch, patch constants): each [] is a counted fetch
-/// of a whole record.
+/// Records of one patch (HLSL: InputPatch, OutputPatch, patch constants): each [] is a counted
+/// fetch of a whole record.
 ///
 /// \tparam P  record, templated on the shader's scalar
 template <class P> class ControlPoints {
@@ -216,12 +222,16 @@ template <class P> class ControlPoints {
 public:
     /// `count` records from `memory`, the same patch for every lane.
     constexpr ControlPoints(storage_of<T> const* memory, int count) : memory_(memory), count_(count)
-    {}
+    {
+    }
     /// For a compile-time tally: records without values; fetches are added to `*fetches`.
-    constexpr ControlPoints(FlopCount* sink, int count, std::uint64_t* fetches = nullptr)
-        requires(ScalarTraits<T>::kTally)
-        : sink_(sink), fetch_sink_(fetches), count_(count)
-    {}
+    constexpr ControlPoints(FlopCount* sink, int count,
+                            std::uint64_t* fetches = nullptr) requires(ScalarTraits<T>::kTally)
+        : sink_(sink),
+          fetch_sink_(fetches),
+          count_(count)
+    {
+    }
 
     static constexpr int kScalars = scalar_count<P>();
     static constexpr std::size_t kRecordBytes = std::size_t(kScalars) * sizeof(storage_of<T>);

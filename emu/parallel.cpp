@@ -26,7 +26,10 @@ ThreadPool::ThreadPool(int threads) : impl_(std::make_unique<Impl>())
 
 ThreadPool::~ThreadPool() = default;
 
-int ThreadPool::threads() const { return impl_->arena.max_concurrency(); }
+int ThreadPool::threads() const
+{
+    return impl_->arena.max_concurrency();
+}
 
 void ThreadPool::parallel_for(std::size_t n, std::function<void(std::size_t)> const& work) const
 {

@@ -4,7 +4,8 @@
 // A pixel shader is
 //
 //     struct S {
-//         template <class T> using Input = ...;  // record: the first attributes after SV_Position that
+//         template <class T> using Input = ...;  // record: the first attributes after SV_Position
+//         that
 //                                                // the stage before wrote
 //         template <class T> float4<T> operator()(PixelInput<T> const&, Input<T> const&) const;
 //     };
@@ -51,7 +52,8 @@ public:
     int input_floats() const override { return scalar_count<Input>(); }
     std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
 
-    void run(FragmentBatch const& b, StageCounters& counters, StageBuffers const& buffers) const override
+    void run(FragmentBatch const& b, StageCounters& counters,
+             StageBuffers const& buffers) const override
     {
         StageScope const scope(counters, buffers, seed_);
         for (std::size_t first = 0; first < b.count; first += N) {
@@ -69,7 +71,8 @@ public:
             for_each_scalar(input, [&](auto& s) { s = lanes(b.attributes[k++]); });
             float4<T> const color = shader_(pixel, input);
             k = 0;
-            for_each_scalar(color, [&](auto const& s) { lanes_value(s).store(b.color[k++] + first); });
+            for_each_scalar(color,
+                            [&](auto const& s) { lanes_value(s).store(b.color[k++] + first); });
         }
         counters.invocations += b.count;
     }

@@ -13,25 +13,36 @@ namespace {
 // Clip planes. A vertex outside one of the first six is outside the view; the guard bits are set
 // where a vertex leaves the band in which 16.8 coordinates are exact.
 enum Outcode : std::uint8_t {
-    kLeft = 1, kRight = 2, kBottom = 4, kTop = 8, kNear = 16, kFar = 32,
+    kLeft = 1,
+    kRight = 2,
+    kBottom = 4,
+    kTop = 8,
+    kNear = 16,
+    kFar = 32,
     kGuard = 64,  // beyond the guard band, or w <= 0: needs clipping
     kBroken = 128 // NaN or infinity: the triangle is dropped
 };
 constexpr std::uint8_t kView = kLeft | kRight | kBottom | kTop | kNear | kFar;
 constexpr std::uint8_t kNeedsClip = kNear | kFar | kGuard;
 
-// The guard band in pixels about the target's origin: 16 bits before the point, one bit kept back so
-// that differences of coordinates fit a 32-bit integer with room.
+// The guard band in pixels about the target's origin: 16 bits before the point, one bit kept back
+// so that differences of coordinates fit a 32-bit integer with room.
 constexpr float kGuardPixels = 16384.0f;
 
 struct ViewportTransform {
     float scale_x, offset_x, scale_y, offset_y, scale_z, offset_z, min_z, max_z;
 
     explicit ViewportTransform(Viewport const& v)
-        : scale_x(v.width * 0.5f), offset_x(v.x + v.width * 0.5f), scale_y(-v.height * 0.5f),
-          offset_y(v.y + v.height * 0.5f), scale_z(v.max_depth - v.min_depth),
-          offset_z(v.min_depth), min_z(v.min_depth), max_z(v.max_depth)
-    {}
+        : scale_x(v.width * 0.5f),
+          offset_x(v.x + v.width * 0.5f),
+          scale_y(-v.height * 0.5f),
+          offset_y(v.y + v.height * 0.5f),
+          scale_z(v.max_depth - v.min_depth),
+          offset_z(v.min_depth),
+          min_z(v.min_depth),
+          max_z(v.max_depth)
+    {
+    }
 };
 
 // Nearest 1/256, ties to even (R24, R101): adding 1.5 * 2^52 leaves the rounded integer in the low
@@ -62,12 +73,18 @@ struct ClipVertex {
 float distance(ClipVertex const& v, int plane, float guard_x, float guard_y)
 {
     switch (plane) {
-    case 0: return v.c[2];
-    case 1: return v.c[3] - v.c[2];
-    case 2: return guard_x * v.c[3] - v.c[0];
-    case 3: return guard_x * v.c[3] + v.c[0];
-    case 4: return guard_y * v.c[3] - v.c[1];
-    default: return guard_y * v.c[3] + v.c[1];
+    case 0:
+        return v.c[2];
+    case 1:
+        return v.c[3] - v.c[2];
+    case 2:
+        return guard_x * v.c[3] - v.c[0];
+    case 3:
+        return guard_x * v.c[3] + v.c[0];
+    case 4:
+        return guard_y * v.c[3] - v.c[1];
+    default:
+        return guard_y * v.c[3] + v.c[1];
     }
 }
 
@@ -86,8 +103,8 @@ void emit(RasterizerState const& state, AssembledVertices const& vertices, std::
           std::vector<AssembledTriangle>& out)
 {
     std::int64_t const x0 = vertices.x[a], y0 = vertices.y[a];
-    std::int64_t const area = (vertices.x[b] - x0) * (vertices.y[c] - y0) -
-                              (vertices.x[c] - x0) * (vertices.y[b] - y0);
+    std::int64_t const area =
+        (vertices.x[b] - x0) * (vertices.y[c] - y0) - (vertices.x[c] - x0) * (vertices.y[b] - y0);
     if (area == 0) return; // covers nothing (R104)
     bool const clockwise = area > 0;
     bool const front = clockwise != state.front_counter_clockwise;
@@ -111,7 +128,8 @@ void project_vertices(Viewport const& viewport, float const* shaded, std::size_t
     out.clipped.clear();
     out.x.resize(count), out.y.resize(count), out.z.resize(count), out.inverse_w.resize(count);
     out.outcode.resize(count);
-    float const *X = shaded, *Y = shaded + stride, *Z = shaded + 2 * stride, *W = shaded + 3 * stride;
+    float const *X = shaded, *Y = shaded + stride, *Z = shaded + 2 * stride,
+                *W = shaded + 3 * stride;
     for (std::size_t i = 0; i < count; ++i) {
         float const x = X[i], y = Y[i], z = Z[i], w = W[i];
         unsigned code = 0;
@@ -185,7 +203,8 @@ void assemble_triangle(RasterizerState const& state, Viewport const& viewport,
         vertices.x.emplace_back(), vertices.y.emplace_back(), vertices.z.emplace_back();
         vertices.inverse_w.emplace_back();
         vertices.outcode.push_back(0);
-        vertices.clipped.insert(vertices.clipped.end(), v.c.begin(), v.c.begin() + vertices.components);
+        vertices.clipped.insert(vertices.clipped.end(), v.c.begin(),
+                                v.c.begin() + vertices.components);
         project(t, v.c.data(), i, vertices);
     }
     for (std::uint32_t i = 1; i + 1 < polygon.size(); ++i) {

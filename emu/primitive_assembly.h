@@ -48,7 +48,8 @@ struct AssemblyCounters {
 void project_vertices(Viewport const& viewport, float const* shaded, std::size_t stride,
                       std::size_t count, int components, AssembledVertices& out);
 
-/// Assembles one triangle of vertices a, b, c: clips it, culls it, appends what is left (at most 7).
+/// Assembles one triangle of vertices a, b, c: clips it, culls it, appends what is left (at most
+/// 7).
 void assemble_triangle(RasterizerState const& state, Viewport const& viewport,
                        AssembledVertices& vertices, std::uint32_t a, std::uint32_t b,
                        std::uint32_t c, std::int32_t primitive_id, AssemblyCounters& counters,

@@ -6,10 +6,13 @@
 namespace tessemu {
 
 RenderTarget::RenderTarget(int width, int height, std::array<float, 4> clear_color)
-    : width_(width), height_(height)
+    : width_(width),
+      height_(height)
 {
     for (int size : {width, height}) {
-        if (size < 1) throw Error("render target size is " + std::to_string(size) + ", at least 1 pixel is needed");
+        if (size < 1)
+            throw Error("render target size is " + std::to_string(size) +
+                        ", at least 1 pixel is needed");
         if (size > kMaxSize)
             throw LimitError("render target size in pixels", std::uint64_t(size), kMaxSize);
     }
@@ -31,10 +34,16 @@ struct Edge {
 
     // From a to b, clockwise on the screen; the value is positive inside.
     Edge(std::int64_t ax, std::int64_t ay, std::int64_t bx, std::int64_t by)
-        : dx(bx - ax), dy(by - ay), at_origin(dy * ax - dx * ay),
+        : dx(bx - ax),
+          dy(by - ay),
+          at_origin(dy * ax - dx * ay),
           top_left(dy < 0 || (dy == 0 && dx > 0))
-    {}
-    std::int64_t operator()(std::int64_t x, std::int64_t y) const { return dx * y - dy * x + at_origin; }
+    {
+    }
+    std::int64_t operator()(std::int64_t x, std::int64_t y) const
+    {
+        return dx * y - dy * x + at_origin;
+    }
 };
 
 F32 to_float(I64 v)
@@ -56,8 +65,13 @@ I64 ramp(std::int64_t step)
 TileRasterizer::TileRasterizer(RenderTarget& target, Rect bounds, Viewport const& viewport,
                                PixelProgram const* pixel_shader, StageBuffers const& buffers,
                                StageCounters& counters)
-    : target_(target), bounds_(bounds), min_depth_(viewport.min_depth), max_depth_(viewport.max_depth),
-      pixel_shader_(pixel_shader), buffers_(buffers), counters_(counters),
+    : target_(target),
+      bounds_(bounds),
+      min_depth_(viewport.min_depth),
+      max_depth_(viewport.max_depth),
+      pixel_shader_(pixel_shader),
+      buffers_(buffers),
+      counters_(counters),
       attributes_(pixel_shader ? pixel_shader->input_floats() : 0)
 {
     attribute_storage_.resize(std::size_t(attributes_) * (kQueue + kGroup));
@@ -67,12 +81,12 @@ TileRasterizer::TileRasterizer(RenderTarget& target, Rect bounds, Viewport const
 
 void TileRasterizer::draw(AssembledVertices const& vertices, AssembledTriangle const& t)
 {
-    std::uint32_t const *v = t.v;
+    std::uint32_t const* v = t.v;
     std::int64_t const x[3] = {vertices.x[v[0]], vertices.x[v[1]], vertices.x[v[2]]};
     std::int64_t const y[3] = {vertices.y[v[0]], vertices.y[v[1]], vertices.y[v[2]]};
 
-    // Pixels whose centre lies in the snapped bounding box; on the right and bottom side the top-left
-    // rule excludes it.
+    // Pixels whose centre lies in the snapped bounding box; on the right and bottom side the
+    // top-left rule excludes it.
     auto const first = [](std::int64_t lowest) { return int((lowest + 127) >> 8); };
     auto const last = [](std::int64_t highest) { return int((highest - 129) >> 8); };
     int const left = std::max(bounds_.left, first(std::min({x[0], x[1], x[2]})));
@@ -82,7 +96,8 @@ void TileRasterizer::draw(AssembledVertices const& vertices, AssembledTriangle c
     if (left > right || top > bottom) return;
 
     // Edge i lies opposite vertex i.
-    Edge const edge[3] = {{x[1], y[1], x[2], y[2]}, {x[2], y[2], x[0], y[0]}, {x[0], y[0], x[1], y[1]}};
+    Edge const edge[3] = {
+        {x[1], y[1], x[2], y[2]}, {x[2], y[2], x[0], y[0]}, {x[0], y[0], x[1], y[1]}};
     std::int64_t const area = edge[0](x[0], y[0]);
     F32 const inverse_area = 1.0f / float(area);
     I64 const step[3] = {ramp(-edge[0].dy * 256), ramp(-edge[1].dy * 256), ramp(-edge[2].dy * 256)};
@@ -147,7 +162,8 @@ void TileRasterizer::draw(AssembledVertices const& vertices, AssembledTriangle c
                 primitive_id_[q] = t.primitive_id;
                 front_face_[q] = t.front_face ? -1 : 0;
                 for (int k = 0; k < attributes_; ++k)
-                    attribute_storage_[std::size_t(k) * (kQueue + kGroup) + q] = attribute[k].raw[l];
+                    attribute_storage_[std::size_t(k) * (kQueue + kGroup) + q] =
+                        attribute[k].raw[l];
             }
             if (queued_ + kWidth > kQueue) flush();
         }

@@ -1,9 +1,9 @@
 // Rasterizer and output merger of one screen tile: coverage, depth test, shading, colour.
 //
 // Coverage is exact: edge functions in 64-bit integers on 16.8 coordinates, top-left rule (R101 to
-// R103). Barycentric weights are the exact edge values times the reciprocal of the area (I-15), so a
-// pixel's values do not depend on the way it was reached. Depth is tested early (LESS, 32-bit float);
-// surviving fragments queue up in submission order and are shaded in dense groups.
+// R103). Barycentric weights are the exact edge values times the reciprocal of the area (I-15), so
+// a pixel's values do not depend on the way it was reached. Depth is tested early (LESS, 32-bit
+// float); surviving fragments queue up in submission order and are shaded in dense groups.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

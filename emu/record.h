@@ -27,9 +27,11 @@ template <class T> struct float2 {
     constexpr float2() = default;
     constexpr float2(T x_, T y_) : x(x_), y(y_) {}
     template <class U>
-        requires(!std::same_as<T, U> && std::convertible_to<U, T>)
-    constexpr float2(float2<U> const& o) : x(o.x), y(o.y)
-    {}
+    requires(!std::same_as<T, U> && std::convertible_to<U, T>) constexpr float2(float2<U> const& o)
+        : x(o.x),
+          y(o.y)
+    {
+    }
 };
 
 template <class T> struct float3 {
@@ -37,9 +39,12 @@ template <class T> struct float3 {
     constexpr float3() = default;
     constexpr float3(T x_, T y_, T z_) : x(x_), y(y_), z(z_) {}
     template <class U>
-        requires(!std::same_as<T, U> && std::convertible_to<U, T>)
-    constexpr float3(float3<U> const& o) : x(o.x), y(o.y), z(o.z)
-    {}
+    requires(!std::same_as<T, U> && std::convertible_to<U, T>) constexpr float3(float3<U> const& o)
+        : x(o.x),
+          y(o.y),
+          z(o.z)
+    {
+    }
 };
 
 template <class T> struct float4 {
@@ -48,9 +53,13 @@ template <class T> struct float4 {
     constexpr float4(T x_, T y_, T z_, T w_) : x(x_), y(y_), z(z_), w(w_) {}
     constexpr float4(float3<T> const& v, T w_) : x(v.x), y(v.y), z(v.z), w(w_) {}
     template <class U>
-        requires(!std::same_as<T, U> && std::convertible_to<U, T>)
-    constexpr float4(float4<U> const& o) : x(o.x), y(o.y), z(o.z), w(o.w)
-    {}
+    requires(!std::same_as<T, U> && std::convertible_to<U, T>) constexpr float4(float4<U> const& o)
+        : x(o.x),
+          y(o.y),
+          z(o.z),
+          w(o.w)
+    {
+    }
 };
 
 // Component-wise arithmetic. Operands may differ in type because a product may be a proxy
@@ -95,8 +104,8 @@ template <class S, class A> constexpr auto operator*(S const& s, float4<A> const
     return float4<decltype(s * a.x)>{s * a.x, s * a.y, s * a.z, s * a.w};
 }
 
-/// body(of) for x, y and z in turn, where of(v) is that component of a float3. Long sums written this way
-/// need a third of the registers that they need as float3 arithmetic.
+/// body(of) for x, y and z in turn, where of(v) is that component of a float3. Long sums written
+/// this way need a third of the registers that they need as float3 arithmetic.
 template <class Body> constexpr void components(Body&& body)
 {
     body([](auto& v) -> auto& { return v.x; });
@@ -125,10 +134,16 @@ template <class T> constexpr float3<T> lerp(float3<T> const& a, float3<T> const&
 {
     return a + t * float3<T>(b - a);
 }
-template <ShaderScalar T> constexpr T saturate(T x) { return min(max(x, T(0)), T(1)); }
+template <ShaderScalar T> constexpr T saturate(T x)
+{
+    return min(max(x, T(0)), T(1));
+}
 
 template <class P>
-concept Record = requires { P::signature(); };
+concept Record = requires
+{
+    P::signature();
+};
 
 namespace detail {
 template <class P> struct Rebind;
@@ -162,7 +177,8 @@ template <class P> constexpr int scalar_count()
     if constexpr (Record<P>) {
         return std::apply(
             [](auto... member) {
-                return (0 + ... + scalar_count<std::remove_cvref_t<decltype(std::declval<P&>().*member)>>());
+                return (0 + ... +
+                        scalar_count<std::remove_cvref_t<decltype(std::declval<P&>().*member)>>());
             },
             P::signature());
     } else {
@@ -212,7 +228,8 @@ template <class M, class P> constexpr P select_record(M mask, P const& yes, P co
 }
 
 /// select() on vectors.
-template <class M, class T> constexpr float3<T> select(M mask, float3<T> const& a, float3<T> const& b)
+template <class M, class T>
+constexpr float3<T> select(M mask, float3<T> const& a, float3<T> const& b)
 {
     return select_record(mask, a, b);
 }

@@ -1,7 +1,7 @@
 // What a shader's scalar type T must tell about itself, and the plain scalars float and double.
 //
-// A shader is a template on T. The traits below are all that stages and memory views ask of it, so a
-// new kind of machine is one header that specialises ScalarTraits.
+// A shader is a template on T. The traits below are all that stages and memory views ask of it, so
+// a new kind of machine is one header that specialises ScalarTraits.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -31,7 +31,10 @@ template <class T> using int_of = typename ScalarTraits<T>::Int;
 template <class T> inline constexpr int lanes_of = ScalarTraits<T>::kLanes;
 
 template <class T>
-concept ShaderScalar = requires { typename ScalarTraits<T>::Storage; };
+concept ShaderScalar = requires
+{
+    typename ScalarTraits<T>::Storage;
+};
 
 template <std::floating_point F> struct ScalarTraits<F> {
     using Storage = F;
@@ -44,31 +47,49 @@ template <std::floating_point F> struct ScalarTraits<F> {
 // HLSL intrinsics on plain scalars. They are templates on the floating type only, so that a wrapper
 // type never falls into them through a conversion.
 
-template <std::floating_point F> F sqrt(F x) { return __builtin_sqrt(x); }
-template <> inline float sqrt(float x) { return __builtin_sqrtf(x); }
-template <std::floating_point F> F floor(F x) { return __builtin_floor(x); }
-template <std::floating_point F> F abs(F x) { return x < F(0) ? -x : x + F(0); }
+template <std::floating_point F> F sqrt(F x)
+{
+    return __builtin_sqrt(x);
+}
+template <> inline float sqrt(float x)
+{
+    return __builtin_sqrtf(x);
+}
+template <std::floating_point F> F floor(F x)
+{
+    return __builtin_floor(x);
+}
+template <std::floating_point F> F abs(F x)
+{
+    return x < F(0) ? -x : x + F(0);
+}
 
 template <class V>
-    requires std::floating_point<V> || std::integral<V>
+requires std::floating_point<V> || std::integral<V>
 constexpr V select(bool mask, V yes, V no)
 {
     return mask ? yes : no;
 }
 
-constexpr bool any(bool mask) { return mask; }
-constexpr bool all(bool mask) { return mask; }
+constexpr bool any(bool mask)
+{
+    return mask;
+}
+constexpr bool all(bool mask)
+{
+    return mask;
+}
 
 namespace detail {
-/// -0, which the compiler must not know: x + -0 is x but for the flush of a denormal x, and compilers
-/// drop the addition of a constant -0.
+/// -0, which the compiler must not know: x + -0 is x but for the flush of a denormal x, and
+/// compilers drop the addition of a constant -0.
 constinit inline float minus_zero = -0.0f;
 
 template <class F> using bits_of = std::conditional_t<sizeof(F) == 4, std::uint32_t, std::uint64_t>;
-}
+} // namespace detail
 
-/// HLSL min: NaN loses against a number (R12), -0 is below +0 (I-5), a denormal result is flushed in
-/// the flushing mode (adding -0 changes nothing else).
+/// HLSL min: NaN loses against a number (R12), -0 is below +0 (I-5), a denormal result is flushed
+/// in the flushing mode (adding -0 changes nothing else).
 template <std::floating_point F> F min(F a, F b)
 {
     using Bits = detail::bits_of<F>;
@@ -114,7 +135,13 @@ inline float fused_multiply_add(float a, float b, float c)
 }
 
 /// HLSL mad, by choice I-6 fused where it is written out.
-inline float mad(float a, float b, float c) { return fused_multiply_add(a, b, c); }
-inline double mad(double a, double b, double c) { return __builtin_fma(a, b, c); }
+inline float mad(float a, float b, float c)
+{
+    return fused_multiply_add(a, b, c);
+}
+inline double mad(double a, double b, double c)
+{
+    return __builtin_fma(a, b, c);
+}
 
 } // namespace tessemu

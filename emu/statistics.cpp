@@ -8,12 +8,18 @@ namespace tessemu {
 char const* name_of(ResourceKind kind)
 {
     switch (kind) {
-    case ResourceKind::Vertex: return "vertex";
-    case ResourceKind::Index: return "index";
-    case ResourceKind::ControlPoint: return "control_point";
-    case ResourceKind::PatchConstant: return "patch_constant";
-    case ResourceKind::Buffer: return "buffer";
-    default: return "texture";
+    case ResourceKind::Vertex:
+        return "vertex";
+    case ResourceKind::Index:
+        return "index";
+    case ResourceKind::ControlPoint:
+        return "control_point";
+    case ResourceKind::PatchConstant:
+        return "patch_constant";
+    case ResourceKind::Buffer:
+        return "buffer";
+    default:
+        return "texture";
     }
 }
 

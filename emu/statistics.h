@@ -37,8 +37,8 @@ struct StageStatistics {
     friend bool operator==(StageStatistics const&, StageStatistics const&) = default;
 };
 
-/// Stages in pipeline order: input_assembler, vertex_shader, hull_shader, tessellator, domain_shader,
-/// rasterizer, pixel_shader, output_merger.
+/// Stages in pipeline order: input_assembler, vertex_shader, hull_shader, tessellator,
+/// domain_shader, rasterizer, pixel_shader, output_merger.
 struct DrawStatistics {
     PipelineStatistics pipeline;
     std::vector<StageStatistics> stages;
@@ -53,7 +53,7 @@ struct StageCounters {
     FlopCount flops;
     std::uint64_t input_fetches = 0, input_touched = 0;       ///< control points, vertices
     std::uint64_t constant_fetches = 0, constant_touched = 0; ///< patch constants
-    std::uint64_t output_fetches = 0, output_touched = 0;     ///< a hull shader's own control points
+    std::uint64_t output_fetches = 0, output_touched = 0; ///< a hull shader's own control points
     std::array<std::uint64_t, kBufferSlots> buffer_fetches{};
 
     StageCounters& operator+=(StageCounters const& o);
@@ -72,12 +72,15 @@ private:
     std::vector<std::unique_ptr<TouchedElements>> touched_;
 };
 
-/// A programmable stage's door: flushes denormals (R9), points the thread's counters at the stage, and
-/// on leaving adds what was counted to `counters`.
+/// A programmable stage's door: flushes denormals (R9), points the thread's counters at the stage,
+/// and on leaving adds what was counted to `counters`.
 class StageScope {
 public:
     StageScope(StageCounters& counters, StageBuffers const& buffers, std::uint64_t site_seed = 0)
-        : counters_(counters), slots_(buffers.slots()), saved_(execution), saved_sites_(site_state)
+        : counters_(counters),
+          slots_(buffers.slots()),
+          saved_(execution),
+          saved_sites_(site_state)
     {
         execution = Execution{};
         execution.buffers = slots_.data();

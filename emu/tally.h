@@ -1,4 +1,5 @@
-// Tally: a scalar that counts operations in a constant expression, beside the shader that it measures.
+// Tally: a scalar that counts operations in a constant expression, beside the shader that it
+// measures.
 //
 //     constexpr FlopCount cost = tally([](auto t) { return gregory_quad(...); });
 //     static_assert(cost.mul == 194);
@@ -93,7 +94,8 @@ template <> struct ScalarTraits<Tally> {
     static constexpr bool kCounted = false, kTally = true, kSites = false;
 };
 
-/// Runs `shader(sink)` and returns what it counted; the shader makes its inputs as Tally(value, sink).
+/// Runs `shader(sink)` and returns what it counted; the shader makes its inputs as Tally(value,
+/// sink).
 template <class F> constexpr FlopCount tally(F&& shader)
 {
     FlopCount c;

@@ -16,7 +16,8 @@ constexpr std::uint32_t kOne = kFixedOne, kHalf = kFixedOne / 2;
 constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
 
 // Half-edge positions 0..32 of the finest level in the order in which they come into being ("ruler
-// function", rule R62). rank(0) = 0, rank(1) = 32, and position 1 + (2m+1) 2^(4-b) has rank 2^b + m.
+// function", rule R62). rank(0) = 0, rank(1) = 32, and position 1 + (2m+1) 2^(4-b) has rank 2^b +
+// m.
 constexpr std::array<std::uint32_t, 33> ruler_ranks()
 {
     std::array<std::uint32_t, 33> rank{};
@@ -36,7 +37,10 @@ constexpr std::array<std::uint32_t, 129> reciprocals()
 }
 constexpr std::array<std::uint32_t, 129> kReciprocal = reciprocals(); // 65536 / n, to nearest
 
-constexpr std::uint32_t drop_highest_bit(std::uint32_t x) { return x & ~std::bit_floor(x); }
+constexpr std::uint32_t drop_highest_bit(std::uint32_t x)
+{
+    return x & ~std::bit_floor(x);
+}
 
 // One factor's subdivided span: N positions, symmetric about the middle.
 struct Span {
@@ -92,8 +96,8 @@ struct Positions {
     std::uint32_t operator[](std::uint32_t p) const { return at[p]; }
 };
 
-// A row of point indices as the stitches walk it: start, start + step, ..., the last one given apart
-// because the last side of a ring ends at the ring's first point.
+// A row of point indices as the stitches walk it: start, start + step, ..., the last one given
+// apart because the last side of a ring ends at the ring's first point.
 struct Row {
     std::uint32_t first, count, last;
     std::int32_t step = 1;
@@ -185,7 +189,8 @@ bool wants_triangles(TessellatorState const& s)
     return s.output == OutputPrimitive::TriangleCw || s.output == OutputPrimitive::TriangleCcw;
 }
 
-// The side `k` of a ring that starts at point `start`: the next side's first point is this one's last.
+// The side `k` of a ring that starts at point `start`: the next side's first point is this one's
+// last.
 Row ring_side(std::uint32_t start, std::array<std::uint32_t, 4> const& counts, int sides, int k)
 {
     std::uint32_t first = start;
@@ -208,8 +213,9 @@ void tessellate_quad(TessellatorState const& state, FixedFactors const& f, Tesse
         return;
     }
 
-    std::array<Positions, 4> const edge{Positions(f.value[0], f.odd[0]), Positions(f.value[1], f.odd[1]),
-                                        Positions(f.value[2], f.odd[2]), Positions(f.value[3], f.odd[3])};
+    std::array<Positions, 4> const edge{
+        Positions(f.value[0], f.odd[0]), Positions(f.value[1], f.odd[1]),
+        Positions(f.value[2], f.odd[2]), Positions(f.value[3], f.odd[3])};
     Positions const Pu(f.value[4], f.odd[4]), Pv(f.value[5], f.odd[5]);
     std::uint32_t const Nu = Pu.span.points, Nv = Pv.span.points;
 
@@ -254,12 +260,21 @@ void tessellate_quad(TessellatorState const& state, FixedFactors const& f, Tesse
                 I = ring_side(ring_start[k], counts, 4, side);
             } else {
                 std::uint32_t const n = row ? counts[1] : counts[0], end = leftover + n - 1;
-                int const along = row ? (side + 3) % 4 : side; // 0: as emitted, 1: end, 2: back, 3: start
+                int const along =
+                    row ? (side + 3) % 4 : side; // 0: as emitted, 1: end, 2: back, 3: start
                 switch (along) {
-                case 0: I = {leftover, n, end}; break;
-                case 1: I = {end, 1, end}; break;
-                case 2: I = {end, n, leftover, -1}; break;
-                default: I = {leftover, 1, leftover}; break;
+                case 0:
+                    I = {leftover, n, end};
+                    break;
+                case 1:
+                    I = {end, 1, end};
+                    break;
+                case 2:
+                    I = {end, n, leftover, -1};
+                    break;
+                default:
+                    I = {leftover, 1, leftover};
+                    break;
                 }
             }
             Span const& inner = side % 2 == 0 ? Pv.span : Pu.span;
@@ -313,7 +328,8 @@ void tessellate_tri(TessellatorState const& state, FixedFactors const& f, Tessel
         return;
     }
 
-    std::array<Positions, 3> const edge{Positions(f.value[0], f.odd[0]), Positions(f.value[1], f.odd[1]),
+    std::array<Positions, 3> const edge{Positions(f.value[0], f.odd[0]),
+                                        Positions(f.value[1], f.odd[1]),
                                         Positions(f.value[2], f.odd[2])};
     Positions const P(f.value[3], f.odd[3]);
     std::uint32_t const N = P.span.points;
@@ -379,7 +395,10 @@ void tessellate_isoline(TessellatorState const& state, FixedFactors const& f, Te
     }
 }
 
-float clamp_factor(float x, float lo, float hi) { return min(hi, max(lo, x)); }
+float clamp_factor(float x, float lo, float hi)
+{
+    return min(hi, max(lo, x));
+}
 
 } // namespace
 
@@ -391,20 +410,28 @@ std::string_view name_of(TessellatorDomain d)
 std::string_view name_of(Partitioning p)
 {
     switch (p) {
-    case Partitioning::Integer: return "integer";
-    case Partitioning::Pow2: return "pow2";
-    case Partitioning::FractionalOdd: return "fractional_odd";
-    default: return "fractional_even";
+    case Partitioning::Integer:
+        return "integer";
+    case Partitioning::Pow2:
+        return "pow2";
+    case Partitioning::FractionalOdd:
+        return "fractional_odd";
+    default:
+        return "fractional_even";
     }
 }
 
 std::string_view name_of(OutputPrimitive p)
 {
     switch (p) {
-    case OutputPrimitive::Point: return "point";
-    case OutputPrimitive::Line: return "line";
-    case OutputPrimitive::TriangleCw: return "triangle_cw";
-    default: return "triangle_ccw";
+    case OutputPrimitive::Point:
+        return "point";
+    case OutputPrimitive::Line:
+        return "line";
+    case OutputPrimitive::TriangleCw:
+        return "triangle_cw";
+    default:
+        return "triangle_ccw";
     }
 }
 
@@ -463,7 +490,8 @@ FixedFactors process_tess_factors(TessellatorState const& state, TessFactors con
     bool const fractional_odd = state.partitioning == Partitioning::FractionalOdd;
     float const lo = state.partitioning == Partitioning::FractionalEven ? 2.0f : 1.0f;
     float const hi = fractional_odd ? 63.0f : 64.0f;
-    constexpr float kAboveOne = 1.0f + 1.0f / (1 << 17); // the largest value that still rounds to 1.0
+    constexpr float kAboveOne =
+        1.0f + 1.0f / (1 << 17); // the largest value that still rounds to 1.0
 
     TessFactors clamped{};
     float inside_lo = lo;
@@ -497,14 +525,21 @@ void tessellate(TessellatorState const& state, FixedFactors const& factors, Tess
     out.u.clear(), out.v.clear(), out.indices.clear();
     if (factors.culled) return;
     switch (state.domain) {
-    case TessellatorDomain::Quad: tessellate_quad(state, factors, out); break;
-    case TessellatorDomain::Tri: tessellate_tri(state, factors, out); break;
-    case TessellatorDomain::Isoline: tessellate_isoline(state, factors, out); break;
+    case TessellatorDomain::Quad:
+        tessellate_quad(state, factors, out);
+        break;
+    case TessellatorDomain::Tri:
+        tessellate_tri(state, factors, out);
+        break;
+    case TessellatorDomain::Isoline:
+        tessellate_isoline(state, factors, out);
+        break;
     }
     auto const n = std::uint32_t(out.points());
     if (state.output == OutputPrimitive::Point) {
         for (std::uint32_t i = 0; i < n; ++i) out.indices.push_back(i);
-    } else if (state.output == OutputPrimitive::Line && state.domain != TessellatorDomain::Isoline) {
+    } else if (state.output == OutputPrimitive::Line &&
+               state.domain != TessellatorDomain::Isoline) {
         for (std::uint32_t i = 0; i + 1 < n; ++i) {
             out.indices.push_back(i);
             out.indices.push_back(i + 1);

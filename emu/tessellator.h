@@ -1,8 +1,8 @@
 // The fixed-function tessellator of Direct3D 11 (specification section 11.7), bit for bit.
 //
-// Tess factors in, domain points and connectivity out. Positions are 16.16 fixed point; the order of
-// points and triangles, which D3D11 leaves open (I-1), is that of Microsoft's reference: outer ring,
-// inner rings, centre.
+// Tess factors in, domain points and connectivity out. Positions are 16.16 fixed point; the order
+// of points and triangles, which D3D11 leaves open (I-1), is that of Microsoft's reference: outer
+// ring, inner rings, centre.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -85,17 +85,21 @@ std::vector<std::uint32_t> span_positions(std::uint32_t factor, bool odd);
 /// A tessellated patch with its domain points as floats, ready for the domain shader.
 struct DomainPoints {
     TessellatedPatch patch;
-    std::vector<float> u, v; ///< exact; padded by a whole group of lanes that repeats the last point
+    std::vector<float> u,
+        v; ///< exact; padded by a whole group of lanes that repeats the last point
 };
 
 /// Serves repeated factors. One per thread; holds at most `capacity` patterns.
 class TessellatorCache {
 public:
     explicit TessellatorCache(TessellatorState state, std::size_t capacity = 256)
-        : state_(state), capacity_(capacity)
-    {}
+        : state_(state),
+          capacity_(capacity)
+    {
+    }
 
-    /// The pattern of these factors, tessellated now or before. It stays valid as long as it is held.
+    /// The pattern of these factors, tessellated now or before. It stays valid as long as it is
+    /// held.
     std::shared_ptr<DomainPoints const> find(TessFactors const& factors);
 
 private:

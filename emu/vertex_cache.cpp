@@ -12,10 +12,14 @@ using Kind = VertexCacheModel::Kind;
 std::string name_of(VertexCacheModel const& m)
 {
     switch (m.kind) {
-    case Kind::None: return "none";
-    case Kind::Fifo: return "fifo:" + std::to_string(m.entries);
-    case Kind::Lru: return "lru:" + std::to_string(m.entries);
-    default: return "infinite";
+    case Kind::None:
+        return "none";
+    case Kind::Fifo:
+        return "fifo:" + std::to_string(m.entries);
+    case Kind::Lru:
+        return "lru:" + std::to_string(m.entries);
+    default:
+        return "infinite";
     }
 }
 
@@ -37,7 +41,8 @@ VertexCacheModel vertex_cache_from_name(std::string_view name)
 }
 
 VertexCache::VertexCache(VertexCacheModel model, std::uint32_t vertex_id_limit)
-    : model_(model), resident_(model.kind == Kind::None ? 0 : vertex_id_limit)
+    : model_(model),
+      resident_(model.kind == Kind::None ? 0 : vertex_id_limit)
 {
     if (model.kind == Kind::Fifo || model.kind == Kind::Lru) {
         newer_.resize(vertex_id_limit);

@@ -1,4 +1,5 @@
-// Post-transform vertex cache: decides how often the vertex shader runs, never what comes out (R41).
+// Post-transform vertex cache: decides how often the vertex shader runs, never what comes out
+// (R41).
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

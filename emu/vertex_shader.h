@@ -4,7 +4,8 @@
 //
 //     struct S {
 //         template <class T> using Input = ...;   // record, as the vertex buffer holds it
-//         template <class T> using Output = ...;  // record; without a hull shader its first member is
+//         template <class T> using Output = ...;  // record; without a hull shader its first member
+//         is
 //                                                 // float4<T> position (SV_Position)
 //         template <class T> Output<T> operator()(VertexInput<T>, Input<T> const&) const;
 //     };
@@ -32,7 +33,8 @@ public:
     /// Runs `ids`, reading `vertices[id * input_floats]` (zeros past the end, R35), writing
     /// `outputs[id * output_floats]`.
     virtual void run(std::span<std::uint32_t const> ids, std::span<float const> vertices,
-                     float* outputs, StageCounters& counters, StageBuffers const& buffers) const = 0;
+                     float* outputs, StageCounters& counters,
+                     StageBuffers const& buffers) const = 0;
 };
 
 template <class Shader, class T> class VertexProgramOn final : public VertexProgram {

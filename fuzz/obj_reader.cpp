@@ -1,9 +1,9 @@
-// libFuzzer target: any bytes either read as a mesh or are refused with an Error; what is read goes on
-// through topology, the Catmull-Clark step and the patch tables.
+// libFuzzer target: any bytes either read as a mesh or are refused with an Error; what is read goes
+// on through topology, the Catmull-Clark step and the patch tables.
 //
 // SPDX-License-Identifier: Apache-2.0
-#include "emu/error.h"
 #include "io/obj_reader.h"
+#include "emu/error.h"
 #include "pipeline/technique.h"
 
 #include <cstddef>

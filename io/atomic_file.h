@@ -16,8 +16,8 @@ struct WriteError : Error {
     using Error::Error;
 };
 
-/// Calls `write` with a temporary path in the target's folder (same extension), then renames. Removes
-/// the temporary and rethrows if `write` throws.
+/// Calls `write` with a temporary path in the target's folder (same extension), then renames.
+/// Removes the temporary and rethrows if `write` throws.
 void write_atomically(std::filesystem::path const& path,
                       std::function<void(std::filesystem::path const&)> const& write);
 
@@ -25,6 +25,7 @@ void write_atomically(std::filesystem::path const& path,
 void write_file(std::filesystem::path const& path, std::string_view bytes);
 
 /// Reads a whole file. Throws FormatError that names it; refuses more than `limit` bytes.
-std::string read_file(std::filesystem::path const& path, std::uint64_t limit = std::uint64_t(4) << 30);
+std::string read_file(std::filesystem::path const& path, std::uint64_t limit = std::uint64_t(4)
+                                                                               << 30);
 
 } // namespace tessemu

@@ -41,7 +41,8 @@ void write_image(RenderTarget const& target, std::filesystem::path const& path)
         for (int y = 0; y < target.height() && good; ++y) {
             std::array<float, 4> const* const pixels = target.color_row(y);
             if (png) {
-                for (std::size_t i = 0; i < row.size(); ++i) row[i] = to_unorm8(pixels[i / 4][i % 4]);
+                for (std::size_t i = 0; i < row.size(); ++i)
+                    row[i] = to_unorm8(pixels[i / 4][i % 4]);
                 good = file->write_scanline(y, 0, OIIO::TypeDesc::UINT8, row.data());
             } else {
                 good = file->write_scanline(y, 0, OIIO::TypeDesc::FLOAT, pixels);

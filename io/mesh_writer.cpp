@@ -55,8 +55,9 @@ struct MeshWriter::Impl {
         if (ply) {
             vertex_file.write(reinterpret_cast<char const*>(&v), sizeof v);
         } else {
-            vertex_file << fmt::format("v {} {} {}\nvn {} {} {}\nvt {} {}\n", v.position[0], v.position[1],
-                                       v.position[2], v.normal[0], v.normal[1], v.normal[2], v.uv[0], v.uv[1]);
+            vertex_file << fmt::format("v {} {} {}\nvn {} {} {}\nvt {} {}\n", v.position[0],
+                                       v.position[1], v.position[2], v.normal[0], v.normal[1],
+                                       v.normal[2], v.uv[0], v.uv[1]);
         }
         ++vertices;
     }
@@ -69,7 +70,8 @@ struct MeshWriter::Impl {
             triangle_file.write(&three, 1);
             triangle_file.write(reinterpret_cast<char const*>(t), sizeof t);
         } else {
-            triangle_file << fmt::format("f {0}/{0}/{0} {1}/{1}/{1} {2}/{2}/{2}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+            triangle_file << fmt::format("f {0}/{0}/{0} {1}/{1}/{1} {2}/{2}/{2}\n", t[0] + 1,
+                                         t[1] + 1, t[2] + 1);
         }
         ++triangles;
     }
@@ -113,7 +115,8 @@ void MeshWriter::add(DrawPass const& pass, ShadedPatch const& patch)
     constexpr int component[6] = {0, 1, 2, 4, 5, 6};
     for (std::size_t i = 0; i < n; ++i) {
         float c[6];
-        for (int k = 0; k < 6; ++k) c[k] = patch.outputs[std::size_t(component[k]) * patch.stride + i];
+        for (int k = 0; k < 6; ++k)
+            c[k] = patch.outputs[std::size_t(component[k]) * patch.stride + i];
         if (m.weld) {
             Bits bits;
             std::memcpy(bits.words.data(), c, sizeof c);
@@ -129,7 +132,8 @@ void MeshWriter::add(DrawPass const& pass, ShadedPatch const& patch)
     if (!m.ply) m.triangle_file << fmt::format("g patch_{}\n", origin.face);
     auto const& index = points.patch.indices;
     for (std::size_t i = 0; i + 2 < index.size(); i += 3) {
-        std::uint32_t const t[3] = {m.number[index[i]], m.number[index[i + 1]], m.number[index[i + 2]]};
+        std::uint32_t const t[3] = {m.number[index[i]], m.number[index[i + 1]],
+                                    m.number[index[i + 2]]};
         if (m.weld && (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])) continue;
         m.put_triangle(t);
     }
@@ -145,12 +149,13 @@ void MeshWriter::finish()
     write_atomically(m.path, [&](fs::path const& temporary) {
         std::ofstream out(temporary, std::ios::binary);
         if (m.ply)
-            out << fmt::format("ply\nformat binary_little_endian 1.0\ncomment tessemu\nelement vertex {}\n"
-                               "property float x\nproperty float y\nproperty float z\n"
-                               "property float nx\nproperty float ny\nproperty float nz\n"
-                               "property float u\nproperty float v\nproperty int patch\n"
-                               "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-                               m.vertices, m.triangles);
+            out << fmt::format(
+                "ply\nformat binary_little_endian 1.0\ncomment tessemu\nelement vertex {}\n"
+                "property float x\nproperty float y\nproperty float z\n"
+                "property float nx\nproperty float ny\nproperty float nz\n"
+                "property float u\nproperty float v\nproperty int patch\n"
+                "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+                m.vertices, m.triangles);
         for (fs::path const& part : {m.vertex_path, m.triangle_path}) {
             std::ifstream in(part, std::ios::binary);
             if (in.peek() != std::ifstream::traits_type::eof()) out << in.rdbuf();
@@ -161,8 +166,14 @@ void MeshWriter::finish()
     });
 }
 
-std::uint64_t MeshWriter::vertices() const { return impl_->vertices; }
-std::uint64_t MeshWriter::triangles() const { return impl_->triangles; }
+std::uint64_t MeshWriter::vertices() const
+{
+    return impl_->vertices;
+}
+std::uint64_t MeshWriter::triangles() const
+{
+    return impl_->triangles;
+}
 
 void MeshWriter::add_to_hash(Sha256& hash) const
 {

@@ -13,9 +13,9 @@ namespace tessemu {
 /// Streams a mesh to disk: vertices and triangles go to two temporary files that become one at the
 /// end, so memory holds one patch (with welding: one entry per vertex).
 ///
-/// A vertex is position, normal, patch (face number in the mesh, from 0), and u, v in that face. Faces
-/// run counter-clockwise seen from outside. OBJ: v, vt (u, v), vn, a group per patch. PLY: binary little
-/// endian, properties x y z nx ny nz u v (float) and patch (int).
+/// A vertex is position, normal, patch (face number in the mesh, from 0), and u, v in that face.
+/// Faces run counter-clockwise seen from outside. OBJ: v, vt (u, v), vn, a group per patch. PLY:
+/// binary little endian, properties x y z nx ny nz u v (float) and patch (int).
 class MeshWriter {
 public:
     /// \param weld  join vertices whose position and normal have equal bits; triangles that lose a
@@ -31,8 +31,8 @@ public:
     std::uint64_t vertices() const;
     std::uint64_t triangles() const;
     /// Adds the mesh to a hash: two digests of 32 bytes, over the vertices (x y z nx ny nz u v as
-    /// little-endian floats, patch as a 32-bit integer) and over the triangles (three 32-bit numbers).
-    /// Call after finish().
+    /// little-endian floats, patch as a 32-bit integer) and over the triangles (three 32-bit
+    /// numbers). Call after finish().
     void add_to_hash(class Sha256& hash) const;
 
 private:

@@ -21,7 +21,8 @@ Model load_model(std::string const& path_or_name)
             known += (known.empty() ? "" : ", ") + std::string(m.name);
         }
         if (!found)
-            throw FormatError(path_or_name, 0, "no such file, and no built-in cage (" + known + ")");
+            throw FormatError(path_or_name, 0,
+                              "no such file, and no built-in cage (" + known + ")");
     }
     ObjFile obj = read_obj(text, path_or_name);
     Model out;

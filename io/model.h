@@ -16,7 +16,10 @@ struct Model {
 
     std::string path; ///< as given, for messages
 
-    int line_of_face(std::size_t face) const { return face < face_lines.size() ? face_lines[face] : 0; }
+    int line_of_face(std::size_t face) const
+    {
+        return face < face_lines.size() ? face_lines[face] : 0;
+    }
 };
 
 /// A file if there is one, else a built-in cage. Throws FormatError; for a name that is neither it

@@ -95,7 +95,8 @@ struct Scan {
 class Scanner {
 public:
     Scanner(std::string_view text, std::string const& name, std::vector<std::string>& warnings)
-        : name_(name), warnings_(warnings)
+        : name_(name),
+          warnings_(warnings)
     {
         if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
         int line = 1;
@@ -168,7 +169,8 @@ private:
         scan.text += 'v';
         for (std::size_t i = 1; i < 4; ++i) {
             if (!is_decimal(words[i]))
-                fail(number, fmt::format("coordinate '{}' is not a finite number", shown(words[i])));
+                fail(number,
+                     fmt::format("coordinate '{}' is not a finite number", shown(words[i])));
             scan.text += ' ';
             scan.text += words[i];
         }
@@ -180,7 +182,8 @@ private:
     {
         auto const words = words_of(line);
         if (words.size() < 4)
-            fail(number, fmt::format("face has {} vertices, at least 3 are needed", words.size() - 1));
+            fail(number,
+                 fmt::format("face has {} vertices, at least 3 are needed", words.size() - 1));
         scan.text += 'f';
         for (std::size_t i = 1; i < words.size(); ++i) {
             if (!is_index_group(words[i]))
@@ -209,15 +212,15 @@ private:
         Tag t{number, std::string(words[1]), {}, {}};
         auto const expected = std::int64_t(counts[0]) + counts[1] + counts[2];
         if (std::int64_t(words.size()) - 3 < expected)
-            return warn(number, fmt::format("tag '{}' announces {} values and has {}: skipped", shown(t.name),
-                                            expected, words.size() - 3));
+            return warn(number, fmt::format("tag '{}' announces {} values and has {}: skipped",
+                                            shown(t.name), expected, words.size() - 3));
         for (std::size_t i = 3; i < 3 + std::size_t(counts[0]) + std::size_t(counts[1]); ++i) {
             bool const integer = i < 3 + std::size_t(counts[0]);
             int k = 0;
             double x = 0;
             if (integer ? !parse(words[i], k) : !is_decimal(words[i]) || !parse(words[i], x))
-                return warn(number, fmt::format("tag '{}' has the value '{}': skipped", shown(t.name),
-                                                shown(words[i])));
+                return warn(number, fmt::format("tag '{}' has the value '{}': skipped",
+                                                shown(t.name), shown(words[i])));
             if (integer)
                 t.ints.push_back(k);
             else
@@ -267,7 +270,8 @@ ObjFile read_obj(std::string_view text, std::string const& name)
     Scanner const scanner(text, name, out.warnings);
     Scan const& scan = scanner.scan;
     if (scan.face_line.empty())
-        throw FormatError(name, 0, fmt::format("holds no face ({} vertices)", scan.vertex_line.size()));
+        throw FormatError(name, 0,
+                          fmt::format("holds no face ({} vertices)", scan.vertex_line.size()));
     auto const warn = [&](int line, std::string const& what) {
         out.warnings.push_back(fmt::format("{}:{}: {}", name, line, what));
     };
@@ -281,9 +285,10 @@ ObjFile read_obj(std::string_view text, std::string const& name)
         glm::vec3 const p = mesh.positions[v];
         for (int k = 0; k < 3; ++k)
             if (!(std::abs(p[k]) <= kMaxCoordinate))
-                throw FormatError(name, scan.vertex_line[v],
-                                  fmt::format("coordinate is {}, the limit is {}: normals would overflow",
-                                              p[k], kMaxCoordinate));
+                throw FormatError(
+                    name, scan.vertex_line[v],
+                    fmt::format("coordinate is {}, the limit is {}: normals would overflow", p[k],
+                                kMaxCoordinate));
     }
 
     std::vector<std::uint32_t> face;
@@ -298,15 +303,17 @@ ObjFile read_obj(std::string_view text, std::string const& name)
             if (index == 0)
                 throw FormatError(name, scan.face_line[f], "vertex index is 0, indices start at 1");
             if (v < 0 || v >= all)
-                throw FormatError(name, scan.face_line[f],
-                                  fmt::format("vertex index is {}, the file has {} vertices{}", index, all,
-                                              index < 0 ? fmt::format(" ({} before this line)", seen) : ""));
+                throw FormatError(
+                    name, scan.face_line[f],
+                    fmt::format("vertex index is {}, the file has {} vertices{}", index, all,
+                                index < 0 ? fmt::format(" ({} before this line)", seen) : ""));
             face.push_back(std::uint32_t(v));
         }
         auto sorted = face;
         std::sort(sorted.begin(), sorted.end());
         if (auto const it = std::adjacent_find(sorted.begin(), sorted.end()); it != sorted.end())
-            throw FormatError(name, scan.face_line[f], fmt::format("face names vertex {} twice", *it + 1));
+            throw FormatError(name, scan.face_line[f],
+                              fmt::format("face names vertex {} twice", *it + 1));
         mesh.add_face(face);
     }
 
@@ -314,8 +321,8 @@ ObjFile read_obj(std::string_view text, std::string const& name)
     for (Tag const& t : scan.tags) {
         auto const in_range = [&](int value, int limit, char const* what) {
             if (value >= 0 && value < limit) return true;
-            warn(t.line, fmt::format("tag '{}' names {} {}, the file has 0 to {}: skipped", t.name, what, value,
-                                     limit - 1));
+            warn(t.line, fmt::format("tag '{}' names {} {}, the file has 0 to {}: skipped", t.name,
+                                     what, value, limit - 1));
             return false;
         };
         auto const value = [&](std::size_t i) {
@@ -323,8 +330,10 @@ ObjFile read_obj(std::string_view text, std::string const& name)
         };
         if (t.name == "crease") {
             for (std::size_t i = 0; i + 1 < t.ints.size(); ++i)
-                if (in_range(t.ints[i], vertices, "vertex") && in_range(t.ints[i + 1], vertices, "vertex"))
-                    mesh.creases.push_back({std::uint32_t(t.ints[i]), std::uint32_t(t.ints[i + 1]), value(i)});
+                if (in_range(t.ints[i], vertices, "vertex") &&
+                    in_range(t.ints[i + 1], vertices, "vertex"))
+                    mesh.creases.push_back(
+                        {std::uint32_t(t.ints[i]), std::uint32_t(t.ints[i + 1]), value(i)});
         } else if (t.name == "corner") {
             for (std::size_t i = 0; i < t.ints.size(); ++i)
                 if (in_range(t.ints[i], vertices, "vertex"))
@@ -353,10 +362,9 @@ ObjFile read_obj(std::string_view text, std::string const& name)
         }
         std::sort(edges.begin(), edges.end());
         std::erase_if(mesh.creases, [&](ControlMesh::Crease const& c) {
-            if (std::binary_search(edges.begin(), edges.end(), ordered(c.a, c.b)))
-                return false;
-            out.warnings.push_back(
-                fmt::format("{}: crease {}-{} runs along no edge of the mesh: skipped", name, c.a, c.b));
+            if (std::binary_search(edges.begin(), edges.end(), ordered(c.a, c.b))) return false;
+            out.warnings.push_back(fmt::format(
+                "{}: crease {}-{} runs along no edge of the mesh: skipped", name, c.a, c.b));
             return true;
         });
     }

@@ -1,7 +1,8 @@
 // OBJ files with OpenSubdiv's tags.
 //
 // tinyobjloader parses the numbers; what it lets pass in silence (missing or odd coordinates, bad
-// indices, cut lines, unknown tags) is found by a scan of the lines, which also knows their numbers.
+// indices, cut lines, unknown tags) is found by a scan of the lines, which also knows their
+// numbers.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -19,8 +20,8 @@ struct ObjFile {
     std::vector<std::string> warnings; ///< with file name and line
 };
 
-/// Largest magnitude of a coordinate: the squared length of a normal, about its fourth power, must stay
-/// within a 32-bit float.
+/// Largest magnitude of a coordinate: the squared length of a normal, about its fourth power, must
+/// stay within a 32-bit float.
 inline constexpr float kMaxCoordinate = 1e9f;
 
 /// Reads v, f and t statements; everything else is skipped (unknown tags with a warning). Vertices
@@ -28,7 +29,8 @@ inline constexpr float kMaxCoordinate = 1e9f;
 ///
 /// \param name  for messages and as the mesh's name
 /// Throws FormatError with file and line for: a coordinate that is missing, not a number or
-/// beyond kMaxCoordinate; an index of 0 or out of range; a face with fewer than 3 or repeated vertices; no face at all.
+/// beyond kMaxCoordinate; an index of 0 or out of range; a face with fewer than 3 or repeated
+/// vertices; no face at all.
 ObjFile read_obj(std::string_view text, std::string const& name);
 ObjFile read_obj_file(std::filesystem::path const& path);
 

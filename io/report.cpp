@@ -10,7 +10,10 @@ namespace tessemu {
 
 using Json = nlohmann::ordered_json;
 
-std::string_view tessemu_version() { return TESSEMU_VERSION; }
+std::string_view tessemu_version()
+{
+    return TESSEMU_VERSION;
+}
 
 namespace {
 
@@ -102,7 +105,8 @@ std::string counted(std::uint64_t n)
 std::string histogram(std::vector<std::pair<std::size_t, std::size_t>> const& entries)
 {
     std::string out;
-    for (auto const& [key, n] : entries) out += fmt::format("{}{}:{}", out.empty() ? "" : "  ", key, n);
+    for (auto const& [key, n] : entries)
+        out += fmt::format("{}{}:{}", out.empty() ? "" : "  ", key, n);
     return out.empty() ? "-" : out;
 }
 
@@ -122,8 +126,10 @@ std::string draw_report(ReportHeader const& header, DrawStatistics const& statis
     add_statistics(j, statistics);
     return finish(std::move(j), header, [&](Sha256& hash) {
         auto const width = std::size_t(target.width());
-        for (int y = 0; y < target.height(); ++y) hash.add(target.color_row(y), width * 4 * sizeof(float));
-        for (int y = 0; y < target.height(); ++y) hash.add(target.depth_row(y), width * sizeof(float));
+        for (int y = 0; y < target.height(); ++y)
+            hash.add(target.color_row(y), width * 4 * sizeof(float));
+        for (int y = 0; y < target.height(); ++y)
+            hash.add(target.depth_row(y), width * sizeof(float));
     });
 }
 
@@ -174,40 +180,46 @@ std::string tessellate_report(ReportHeader const& header, TessellatorCase const&
 
 std::string counters_table(DrawStatistics const& s)
 {
-    std::string out = fmt::format("{:<16} {:>13} {:>14} {:>14} {:>11} {:>9} {:>9}\n", "stage", "invocations",
-                                  "add", "mul", "mad", "div", "sqrt");
+    std::string out = fmt::format("{:<16} {:>13} {:>14} {:>14} {:>11} {:>9} {:>9}\n", "stage",
+                                  "invocations", "add", "mul", "mad", "div", "sqrt");
     for (StageStatistics const& stage : s.stages)
         out += fmt::format("{:<16} {:>13} {:>14} {:>14} {:>11} {:>9} {:>9}\n", stage.stage,
-                           counted(stage.invocations), counted(stage.flops.add), counted(stage.flops.mul),
-                           counted(stage.flops.mad), counted(stage.flops.div), counted(stage.flops.sqrt));
-    out += fmt::format("\n{:<16} {:<22} {:<15} {:>15} {:>16} {:>16}\n", "fetches of", "resource", "kind", "count",
-                       "bytes", "unique bytes");
+                           counted(stage.invocations), counted(stage.flops.add),
+                           counted(stage.flops.mul), counted(stage.flops.mad),
+                           counted(stage.flops.div), counted(stage.flops.sqrt));
+    out += fmt::format("\n{:<16} {:<22} {:<15} {:>15} {:>16} {:>16}\n", "fetches of", "resource",
+                       "kind", "count", "bytes", "unique bytes");
     for (StageStatistics const& stage : s.stages)
         for (FetchStatistics const& f : stage.fetches)
-            out += fmt::format("{:<16} {:<22} {:<15} {:>15} {:>16} {:>16}\n", stage.stage, f.resource,
-                               name_of(f.kind), counted(f.count), counted(f.bytes), counted(f.unique_bytes));
+            out += fmt::format("{:<16} {:<22} {:<15} {:>15} {:>16} {:>16}\n", stage.stage,
+                               f.resource, name_of(f.kind), counted(f.count), counted(f.bytes),
+                               counted(f.unique_bytes));
     PipelineStatistics const& p = s.pipeline;
-    out += fmt::format("\n{} patches, {} domain points, {} triangles, {} after clipping, {} pixels shaded\n",
-                       counted(p.HSInvocations), counted(p.DSInvocations), counted(p.CInvocations),
-                       counted(p.CPrimitives), counted(p.PSInvocations));
+    out += fmt::format(
+        "\n{} patches, {} domain points, {} triangles, {} after clipping, {} pixels shaded\n",
+        counted(p.HSInvocations), counted(p.DSInvocations), counted(p.CInvocations),
+        counted(p.CPrimitives), counted(p.PSInvocations));
     return out;
 }
 
 std::string info_table(MeshSummary const& s, std::vector<PatchCount> const& patches)
 {
-    std::string out =
-        fmt::format("vertices           {}{}\nfaces              {}   by sides  {}\nedges              {}\n"
-                    "boundary edges     {}   {}\ncomponents         {}\ninterior valences  {}\n"
-                    "boundary valences  {}\nregular faces      {}\n",
-                    s.vertices, s.unused_vertices ? fmt::format("   ({} unused)", s.unused_vertices) : "", s.faces,
-                    histogram(s.faces_by_size), s.edges, s.boundary_edges, s.boundary_edges ? "open" : "closed",
-                    s.components, histogram(s.interior_valences), histogram(s.boundary_valences), s.regular_faces);
+    std::string out = fmt::format(
+        "vertices           {}{}\nfaces              {}   by sides  {}\nedges              {}\n"
+        "boundary edges     {}   {}\ncomponents         {}\ninterior valences  {}\n"
+        "boundary valences  {}\nregular faces      {}\n",
+        s.vertices, s.unused_vertices ? fmt::format("   ({} unused)", s.unused_vertices) : "",
+        s.faces, histogram(s.faces_by_size), s.edges, s.boundary_edges,
+        s.boundary_edges ? "open" : "closed", s.components, histogram(s.interior_valences),
+        histogram(s.boundary_valences), s.regular_faces);
     if (patches.empty()) return out;
-    out += fmt::format("\n{:<18} {:>9} {:>20} {:>10}\n", "patch kind", "patches", "connectivity types", "inputs");
+    out += fmt::format("\n{:<18} {:>9} {:>20} {:>10}\n", "patch kind", "patches",
+                       "connectivity types", "inputs");
     for (PatchCount const& c : patches)
         out += fmt::format("{:<18} {:>9} {:>20} {:>10}\n", c.kind.name, c.patches, c.types,
-                           c.min_inputs == c.max_inputs ? std::to_string(c.min_inputs)
-                                                        : fmt::format("{}-{}", c.min_inputs, c.max_inputs));
+                           c.min_inputs == c.max_inputs
+                               ? std::to_string(c.min_inputs)
+                               : fmt::format("{}-{}", c.min_inputs, c.max_inputs));
     return out;
 }
 

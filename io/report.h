@@ -31,8 +31,8 @@ struct ReportHeader {
     Config run; ///< times, threads, lanes: not hashed
 };
 
-/// draw: counters and stages; "hash" covers the report without tool, run and hash, then the colour and
-/// the depth target, rows from the top.
+/// draw: counters and stages; "hash" covers the report without tool, run and hash, then the colour
+/// and the depth target, rows from the top.
 std::string draw_report(ReportHeader const& header, DrawStatistics const& statistics,
                         RenderTarget const& target);
 

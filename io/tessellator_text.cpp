@@ -31,13 +31,17 @@ TessellatorCase parse_tessellator_case(std::string_view text, std::string const&
     auto const d = tessellator_domain_from_name(domain);
     auto const p = partitioning_from_name(partitioning);
     auto const o = output_primitive_from_name(output);
-    if (!d) throw FormatError(file, line, "domain is '" + domain + "', it must be quad, tri or isoline");
+    if (!d)
+        throw FormatError(file, line,
+                          "domain is '" + domain + "', it must be quad, tri or isoline");
     if (!p)
-        throw FormatError(file, line, "partitioning is '" + partitioning +
-                                          "', it must be integer, pow2, fractional_odd or fractional_even");
+        throw FormatError(file, line,
+                          "partitioning is '" + partitioning +
+                              "', it must be integer, pow2, fractional_odd or fractional_even");
     if (!o)
-        throw FormatError(file, line, "output is '" + output +
-                                          "', it must be point, line, triangle_cw or triangle_ccw");
+        throw FormatError(file, line,
+                          "output is '" + output +
+                              "', it must be point, line, triangle_cw or triangle_ccw");
     TessellatorCase c{{*d, *p, *o}, {}};
     int const wanted = tess_factor_count(*d);
     int got = 0;
@@ -45,12 +49,14 @@ TessellatorCase parse_tessellator_case(std::string_view text, std::string const&
         std::uint32_t bits = 0;
         auto const [end, ec] = std::from_chars(word.data(), word.data() + word.size(), bits, 16);
         if (word.size() != 8 || ec != std::errc() || end != word.data() + word.size())
-            throw FormatError(file, line, "factor is '" + word + "', it must be 8 hexadecimal digits");
+            throw FormatError(file, line,
+                              "factor is '" + word + "', it must be 8 hexadecimal digits");
         if (got < wanted) c.factors[std::size_t(got)] = std::bit_cast<float>(bits);
         ++got;
     }
     if (got != wanted)
-        throw FormatError(file, line, fmt::format("{} has {} factors, {} are needed", domain, got, wanted));
+        throw FormatError(file, line,
+                          fmt::format("{} has {} factors, {} are needed", domain, got, wanted));
     return c;
 }
 
@@ -75,8 +81,8 @@ std::string tessellator_answer(TessellatedPatch const& patch)
     Fnv points, indices;
     for (std::size_t i = 0; i < patch.points(); ++i) points.add(patch.u[i]), points.add(patch.v[i]);
     for (std::uint32_t i : patch.indices) indices.add(i);
-    return fmt::format("{} {} {:016x} {:016x}", patch.points(), patch.indices.size(), points.value(),
-                       indices.value());
+    return fmt::format("{} {} {:016x} {:016x}", patch.points(), patch.indices.size(),
+                       points.value(), indices.value());
 }
 
 } // namespace tessemu

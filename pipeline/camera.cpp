@@ -27,7 +27,10 @@ Bounds bounds_of(std::span<glm::vec3 const> points)
 }
 } // namespace
 
-glm::vec3 Camera::backward() const { return glm::normalize(eye - target); }
+glm::vec3 Camera::backward() const
+{
+    return glm::normalize(eye - target);
+}
 
 glm::vec3 Camera::right() const
 {
@@ -36,7 +39,10 @@ glm::vec3 Camera::right() const
     return glm::normalize(side);
 }
 
-glm::vec3 Camera::true_up() const { return glm::cross(backward(), right()); }
+glm::vec3 Camera::true_up() const
+{
+    return glm::cross(backward(), right());
+}
 
 Matrix4 view_projection(Camera const& c, float width_over_height)
 {

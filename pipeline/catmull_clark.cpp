@@ -46,13 +46,15 @@ ControlMesh catmull_clark_step(Topology const& topology)
             edge_point[h] = edge_point[other];
             continue;
         }
-        glm::dvec3 const a = at(topology.vertex_of(h)), b = at(topology.vertex_of(topology.next(h)));
+        glm::dvec3 const a = at(topology.vertex_of(h)),
+                         b = at(topology.vertex_of(topology.next(h)));
         edge_point[h] = std::uint32_t(out.positions.size());
         if (other == Topology::kNone)
             out.positions.emplace_back((a + b) / 2.0);
         else
             out.positions.emplace_back(
-                (a + b + face_point[topology.face_of(h)] + face_point[topology.face_of(other)]) / 4.0);
+                (a + b + face_point[topology.face_of(h)] + face_point[topology.face_of(other)]) /
+                4.0);
     }
     auto const first_face_point = std::uint32_t(out.positions.size());
     for (glm::dvec3 const& f : face_point) out.positions.emplace_back(f);
@@ -64,7 +66,8 @@ ControlMesh catmull_clark_step(Topology const& topology)
         out.add_face(quad);
     }
     for (std::uint32_t f : mesh.holes)
-        for (HalfEdge h = mesh.face_start[f]; h < mesh.face_start[f + 1]; ++h) out.holes.push_back(h);
+        for (HalfEdge h = mesh.face_start[f]; h < mesh.face_start[f + 1]; ++h)
+            out.holes.push_back(h);
     for (auto const& c : mesh.corners) out.corners.push_back(c);
     for (auto const& c : mesh.creases) {
         HalfEdge const h = topology.find_edge(c.a, c.b);

@@ -7,11 +7,13 @@
 
 namespace tessemu {
 
-/// F = mean of the face, E = (a + b + F + F')/4, V = (n-2)/n V + mean(d)/n + mean(F)/n (LOOP10 section
-/// 3; sheet math_subdivision section 1.1); boundary: midpoints and (1,6,1)/8, a vertex with one face
-/// stays unless the boundary rule is EdgeOnly. Creases move to the new edges, one less sharp, but do not shape the step.
+/// F = mean of the face, E = (a + b + F + F')/4, V = (n-2)/n V + mean(d)/n + mean(F)/n (LOOP10
+/// section 3; sheet math_subdivision section 1.1); boundary: midpoints and (1,6,1)/8, a vertex with
+/// one face stays unless the boundary rule is EdgeOnly. Creases move to the new edges, one less
+/// sharp, but do not shape the step.
 ///
-/// \returns vertex points, then edge points in order of first meeting, then face points; quads face by
+/// \returns vertex points, then edge points in order of first meeting, then face points; quads face
+/// by
 ///          face, each starting at its old vertex. Sums run in double and are rounded once.
 ControlMesh catmull_clark_step(Topology const& topology);
 

@@ -9,7 +9,8 @@ namespace tessemu {
 
 namespace {
 
-// A corner in a number that orders: boundary, faces, position, sides of the faces from the patch on.
+// A corner in a number that orders: boundary, faces, position, sides of the faces from the patch
+// on.
 std::uint64_t corner_signature(Topology const& topology, HalfEdge h)
 {
     std::uint32_t const v = topology.vertex_of(h);

@@ -30,7 +30,8 @@ struct CornerNeighbourhood {
     int edge_to(int j) const
     {
         int const n = int(faces.size());
-        if (boundary && j == n) return faces[std::size_t(n) - 1].vertices[faces[std::size_t(n) - 1].sides - 1];
+        if (boundary && j == n)
+            return faces[std::size_t(n) - 1].vertices[faces[std::size_t(n) - 1].sides - 1];
         return faces[std::size_t(((j % n) + n) % n)].vertices[1];
     }
 };
@@ -42,7 +43,8 @@ struct Neighbourhood {
     std::vector<std::uint32_t> inputs; ///< global vertex of each local number
     std::string key;                   ///< equal for equal connectivity types
 
-    /// Ring start relative to the patch's face: ring edge 0 is edge `ring_shift[i]` of corner i's list.
+    /// Ring start relative to the patch's face: ring edge 0 is edge `ring_shift[i]` of corner i's
+    /// list.
     int ring_shift[4] = {};
 };
 

@@ -10,10 +10,14 @@ namespace tessemu {
 std::string_view name_of(View view)
 {
     switch (view) {
-    case View::Lit: return "lit";
-    case View::Normals: return "normals";
-    case View::Patches: return "patches";
-    default: return "depth";
+    case View::Lit:
+        return "lit";
+    case View::Normals:
+        return "normals";
+    case View::Patches:
+        return "patches";
+    default:
+        return "depth";
     }
 }
 
@@ -24,8 +28,8 @@ std::optional<View> view_from_name(std::string_view name)
     return {};
 }
 
-std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind, Camera const& camera,
-                                              Machine const& machine)
+std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
+                                              Camera const& camera, Machine const& machine)
 {
     auto const array = [](glm::vec3 v) { return std::array<float, 3>{v.x, v.y, v.z}; };
     // A key light over the viewer's left shoulder.
@@ -39,10 +43,13 @@ std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind, 
         s.up = array(camera.true_up());
         return make_pixel_program(s, machine);
     }
-    case View::Normals: return make_pixel_program(NormalPixelShader{}, machine);
+    case View::Normals:
+        return make_pixel_program(NormalPixelShader{}, machine);
     case View::Patches: {
-        constexpr std::array<float, 3> kColors[] = {
-            {0.42f, 0.66f, 0.92f}, {1.0f, 0.66f, 0.28f}, {0.42f, 0.80f, 0.46f}, {0.88f, 0.45f, 0.62f}};
+        constexpr std::array<float, 3> kColors[] = {{0.42f, 0.66f, 0.92f},
+                                                    {1.0f, 0.66f, 0.28f},
+                                                    {0.42f, 0.80f, 0.46f},
+                                                    {0.88f, 0.45f, 0.62f}};
         PatchPixelShader s;
         s.color = kColors[std::size_t(kind.color_index) % std::size(kColors)];
         s.light = array(light);
@@ -94,14 +101,15 @@ Frame draw_frame(PatchMesh const& mesh, FrameSettings const& s, ThreadPool const
     return frame;
 }
 
-DrawStatistics visit_surface(PatchMesh const& mesh, FrameSettings const& s, ThreadPool const& threads,
-                             SurfaceVisitor const& visit)
+DrawStatistics visit_surface(PatchMesh const& mesh, FrameSettings const& s,
+                             ThreadPool const& threads, SurfaceVisitor const& visit)
 {
     DrawStatistics statistics;
     for (DrawPass const& pass : mesh.passes(pass_settings(s))) {
         PatchVisitor visitor;
         if (visit) visitor = [&](ShadedPatch const& p) { visit(pass, p); };
-        statistics += draw(pass.pipeline, pass.call, nullptr, visitor, threads, {s.vertex_cache, {}});
+        statistics +=
+            draw(pass.pipeline, pass.call, nullptr, visitor, threads, {s.vertex_cache, {}});
     }
     return statistics;
 }

@@ -16,8 +16,8 @@ std::optional<View> view_from_name(std::string_view name);
 inline constexpr View kViews[] = {View::Lit, View::Normals, View::Patches, View::Depth};
 
 /// The pixel shader of a view.
-std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind, Camera const& camera,
-                                              Machine const& machine);
+std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
+                                              Camera const& camera, Machine const& machine);
 
 struct FrameSettings {
     int width = 1024, height = 1024;
@@ -41,8 +41,8 @@ struct Frame {
 Frame draw_frame(PatchMesh const& mesh, FrameSettings const& settings, ThreadPool const& threads,
                  DrawProgress const& progress = {});
 
-/// A patch of the surface in object space: the domain shader ran with the identity transform, so the
-/// position's x, y, z are the surface's, bit for bit (w is 1).
+/// A patch of the surface in object space: the domain shader ran with the identity transform, so
+/// the position's x, y, z are the surface's, bit for bit (w is 1).
 using SurfaceVisitor = std::function<void(DrawPass const&, ShadedPatch const&)>;
 
 /// Tessellates without raster; uses machine, factors and cache of `settings`. `visit` may be empty.

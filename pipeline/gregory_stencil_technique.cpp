@@ -17,9 +17,18 @@ namespace {
 enum Kind { kRegularQuad, kGregoryQuad, kGregoryTriangle, kKinds };
 constexpr char const* kKindNames[kKinds] = {"regular quad", "Gregory quad", "Gregory triangle"};
 
-PatchKind kind_info(Kind k) { return {kKindNames[k], k}; }
-int sides_of(Kind k) { return k == kGregoryTriangle ? 3 : 4; }
-int points_of(Kind k) { return k == kRegularQuad ? 16 : k == kGregoryQuad ? 20 : 15; }
+PatchKind kind_info(Kind k)
+{
+    return {kKindNames[k], k};
+}
+int sides_of(Kind k)
+{
+    return k == kGregoryTriangle ? 3 : 4;
+}
+int points_of(Kind k)
+{
+    return k == kRegularQuad ? 16 : k == kGregoryQuad ? 20 : 15;
+}
 
 // Patches of one kind and one number of inputs: an index buffer of their own, sorted by type.
 struct Group {
@@ -41,7 +50,8 @@ struct Type {
 class GregoryStencilMesh final : public PatchMesh {
 public:
     GregoryStencilMesh(Topology const& topology, GregoryParameters parameters)
-        : mesh_(topology.mesh()), parameters_(parameters)
+        : mesh_(topology.mesh()),
+          parameters_(parameters)
     {
         parameters_.smooth_corners = mesh_.boundary == BoundaryRule::EdgeOnly;
         static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
@@ -122,8 +132,9 @@ private:
                 for (std::uint32_t v : mesh_.face(f))
                     if (topology.is_boundary(v) && !hidden[f]) hidden[f] = 1, ++dropped;
             if (dropped)
-                warnings_.push_back(std::to_string(dropped) +
-                                    " faces at the boundary are not drawn: interpolateboundary is 0");
+                warnings_.push_back(
+                    std::to_string(dropped) +
+                    " faces at the boundary are not drawn: interpolateboundary is 0");
         }
 
         std::unordered_map<std::string, std::uint32_t> type_ids;
@@ -143,7 +154,8 @@ private:
         });
         for (Patch const& p : patches) {
             Type const& t = types_[p.type];
-            if (groups_.empty() || groups_.back().kind != t.kind || groups_.back().inputs != t.inputs)
+            if (groups_.empty() || groups_.back().kind != t.kind ||
+                groups_.back().inputs != t.inputs)
                 groups_.push_back({t.kind, t.inputs, {}, {}, {}, {}});
             find_neighbourhood(topology, p.face, n);
             add_patch(groups_.back(), t, n, p);
@@ -164,7 +176,9 @@ private:
     {
         bool const regular = is_regular(topology, face);
         GregoryStencils const s = make_gregory_stencils(n, regular, parameters_);
-        Type t{n.sides == 3 ? kGregoryTriangle : regular ? kRegularQuad : kGregoryQuad,
+        Type t{n.sides == 3 ? kGregoryTriangle
+               : regular    ? kRegularQuad
+                            : kGregoryQuad,
                s.inputs,
                int(s.rows.size()),
                {s.corner_row[0], s.corner_row[1], s.corner_row[2], s.corner_row[3]},
@@ -204,7 +218,8 @@ private:
     }
 
     template <TessellatorDomain kDomain>
-    std::shared_ptr<HullProgram const> hull_program(Group const& g, PassSettings const& settings) const
+    std::shared_ptr<HullProgram const> hull_program(Group const& g,
+                                                    PassSettings const& settings) const
     {
         StencilHullShader<kDomain> hs;
         hs.points = points_of(g.kind);
@@ -227,8 +242,8 @@ private:
     ControlMesh const& mesh_;
     GregoryParameters parameters_;
     std::vector<Type> types_;
-    std::vector<float> weights_;        // [type][input][row]
-    std::vector<std::uint32_t> masks_;  // [type][row]
+    std::vector<float> weights_;       // [type][input][row]
+    std::vector<std::uint32_t> masks_; // [type][row]
     std::vector<Group> groups_;
     std::vector<std::string> warnings_;
 };
@@ -237,12 +252,13 @@ class GregoryStencilTechnique final : public Technique {
 public:
     SchemeInfo info() const override
     {
-        return {"gregory-stencil",
-                "LOOP09",
-                "3, 4.3, 4.5, 4.6",
-                "Gregory quads and triangles, regular quads as bicubics, stencils by connectivity type",
-                {{"lambda", "multiplies the tangent length lambda(n) of interior vertices", 1},
-                 {"r", "multiplies the transversal vectors r of the face points", 1}}};
+        return {
+            "gregory-stencil",
+            "LOOP09",
+            "3, 4.3, 4.5, 4.6",
+            "Gregory quads and triangles, regular quads as bicubics, stencils by connectivity type",
+            {{"lambda", "multiplies the tangent length lambda(n) of interior vertices", 1},
+             {"r", "multiplies the transversal vectors r of the face points", 1}}};
     }
 
     std::unique_ptr<PatchMesh> build(Topology const& topology,
@@ -255,7 +271,8 @@ public:
             else if (name == "r")
                 p.r_scale = value;
             else
-                throw Error("gregory-stencil has no parameter '" + name + "'; there are lambda and r");
+                throw Error("gregory-stencil has no parameter '" + name +
+                            "'; there are lambda and r");
         }
         return std::make_unique<GregoryStencilMesh>(topology, p);
     }

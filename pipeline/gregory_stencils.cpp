@@ -31,7 +31,10 @@ Row operator*(double s, Row a)
 class CornerRows {
 public:
     CornerRows(CornerNeighbourhood const& corner, int inputs, GregoryParameters const& parameters)
-        : c_(corner), n_(int(corner.faces.size())), inputs_(std::size_t(inputs)), parameters_(parameters)
+        : c_(corner),
+          n_(int(corner.faces.size())),
+          inputs_(std::size_t(inputs)),
+          parameters_(parameters)
     {
         if (!c_.boundary) return;
         a_ = Sum(*this).vertex(d(0), 0.5).vertex(d(n_), -0.5).row();
@@ -55,7 +58,11 @@ public:
     {
         if (c_.boundary) {
             if (n_ == 1 && !parameters_.smooth_corners) return Sum(*this).vertex(v(), 1).row();
-            return Sum(*this).vertex(d(0), 1.0 / 6).vertex(v(), 4.0 / 6).vertex(d(n_), 1.0 / 6).row();
+            return Sum(*this)
+                .vertex(d(0), 1.0 / 6)
+                .vertex(v(), 4.0 / 6)
+                .vertex(d(n_), 1.0 / 6)
+                .row();
         }
         double const n = n_;
         Sum sum(*this);
@@ -85,8 +92,7 @@ public:
     {
         if (!c_.boundary)
             return p() + (2.0 / 3 * (parameters_.lambda_scale * loop09_lambda(n_))) * q(j);
-        if (j == 0 || j == n_)
-            return Sum(*this).vertex(v(), 2.0 / 3).vertex(d(j), 1.0 / 3).row();
+        if (j == 0 || j == n_) return Sum(*this).vertex(v(), 2.0 / 3).vertex(d(j), 1.0 / 3).row();
         return p() + 1.0 / 3 * (cos_pi(j, n_) * a_ + sin_pi(j, n_) * b_);
     }
 
@@ -110,7 +116,8 @@ public:
     /// 3/2 (e_(j+1) - e_(j-1)): the transversal direction at this end of an inner edge.
     Row across(int j) const { return 1.5 * (e(j + 1) - e(j - 1)); }
 
-    /// Two tangents, the surface normal's direction their cross product, for a ring that starts at s.
+    /// Two tangents, the surface normal's direction their cross product, for a ring that starts at
+    /// s.
     std::pair<Row, Row> tangents(int s) const
     {
         if (!c_.boundary) return {q(s), q(s, true)};
@@ -171,8 +178,7 @@ private:
         Sum sum(*this);
         sum.vertex(v(), -4 * s * scale).vertex(d(0), w0 * scale).vertex(d(k), w0 * scale);
         for (int j = 1; j < k; ++j) sum.vertex(d(j), 4 * sin_pi(j, k) * scale);
-        for (int j = 0; j < k; ++j)
-            sum.diagonal(j, (sin_pi(j, k) + sin_pi(j + 1, k)) * scale);
+        for (int j = 0; j < k; ++j) sum.diagonal(j, (sin_pi(j, k) + sin_pi(j + 1, k)) * scale);
         return sum.row();
     }
 
@@ -205,13 +211,16 @@ GregoryStencils make_gregory_stencils(Neighbourhood const& patch, bool regular,
     double const d = N == 4 ? 3 : 4;
     for (std::size_t i = 0; i < sides; ++i) {
         std::size_t const next = (i + 1) % sides, previous = (i + sides - 1) % sides;
-        double const c = corner[i].C(), c_next = corner[next].C(), c_previous = corner[previous].C();
+        double const c = corner[i].C(), c_next = corner[next].C(),
+                     c_previous = corner[previous].C();
         // LOOP09 eq. (6), whose first vector must be p, not v (sheet section 10).
-        f_plus[i] = 1 / d * (c_next * p[i] + (d - 2 * c - c_next) * e_plus[i] + 2 * c * e_minus[next] +
-                             corner[i].r(corner[i].plus()));
+        f_plus[i] = 1 / d *
+                    (c_next * p[i] + (d - 2 * c - c_next) * e_plus[i] + 2 * c * e_minus[next] +
+                     corner[i].r(corner[i].plus()));
         // r for the other edge is seen from its other side: minus r of that edge.
-        f_minus[i] = 1 / d * (c_previous * p[i] + (d - 2 * c - c_previous) * e_minus[i] +
-                              2 * c * e_plus[previous] - corner[i].r(corner[i].minus()));
+        f_minus[i] = 1 / d *
+                     (c_previous * p[i] + (d - 2 * c - c_previous) * e_minus[i] +
+                      2 * c * e_plus[previous] - corner[i].r(corner[i].minus()));
     }
     for (auto const* rows : {&p, &e_plus, &e_minus, &f_plus})
         out.rows.insert(out.rows.end(), rows->begin(), rows->end());

@@ -39,7 +39,10 @@ double cos_pi(int a, int b)
     return sin_small(kPi * (b - 2 * a) / (2 * b));
 }
 
-double sin_pi(int a, int b) { return cos_pi(b - 2 * a, 2 * b); }
+double sin_pi(int a, int b)
+{
+    return cos_pi(b - 2 * a, 2 * b);
+}
 
 double loop09_lambda(int n)
 {

@@ -5,8 +5,8 @@
 
 namespace tessemu {
 
-/// cos(pi a / b), b > 0. Reduced exactly in integers to [0, pi/4], then a Taylor polynomial: within 2
-/// ulp of the cosine, and exact at multiples of pi/2 and pi/3.
+/// cos(pi a / b), b > 0. Reduced exactly in integers to [0, pi/4], then a Taylor polynomial: within
+/// 2 ulp of the cosine, and exact at multiples of pi/2 and pi/3.
 double cos_pi(int a, int b);
 /// sin(pi a / b) = cos(pi (b - 2a) / (2b))
 double sin_pi(int a, int b);

@@ -35,10 +35,14 @@ FacePoint domain_to_face(PatchOrigin const& origin, float u, float v)
         return {weight[(3 - origin.rotation) % 3], weight[(4 - origin.rotation) % 3]};
     }
     switch (origin.rotation) {
-    case 1: return {1 - v, u};
-    case 2: return {1 - u, 1 - v};
-    case 3: return {v, 1 - u};
-    default: return {u, v};
+    case 1:
+        return {1 - v, u};
+    case 2:
+        return {1 - u, 1 - v};
+    case 3:
+        return {v, 1 - u};
+    default:
+        return {u, v};
     }
 }
 
@@ -55,9 +59,9 @@ PreparedMesh prepare_mesh(ControlMesh mesh, Technique const& technique)
     if (polygons > 0 && !technique.takes_polygons()) {
         auto split = std::make_unique<ControlMesh>(catmull_clark_step(*out.topology));
         out.warnings.push_back(std::to_string(polygons) + " faces have more than 4 sides (up to " +
-                               std::to_string(largest) +
-                               "): one Catmull-Clark step makes " + std::to_string(split->faces()) +
-                               " quads of the mesh's " + std::to_string(out.mesh->faces()) + " faces");
+                               std::to_string(largest) + "): one Catmull-Clark step makes " +
+                               std::to_string(split->faces()) + " quads of the mesh's " +
+                               std::to_string(out.mesh->faces()) + " faces");
         out.topology = std::make_unique<Topology>(*split);
         out.mesh = std::move(split);
     }

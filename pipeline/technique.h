@@ -1,8 +1,9 @@
 // Techniques: how a control mesh becomes draws.
 //
 // A technique builds a patch mesh once: patch kinds, connectivity types, tables, index buffers. The
-// patch mesh then gives passes for any tess factor, machine or view, so sweeps pay for tables once. A
-// scheme is one folder of shaders and one technique file, registered in one line of technique.cpp.
+// patch mesh then gives passes for any tess factor, machine or view, so sweeps pay for tables once.
+// A scheme is one folder of shaders and one technique file, registered in one line of
+// technique.cpp.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -35,8 +36,8 @@ struct PatchOrigin {
     std::uint8_t rotation = 0, sides = 4;
 };
 
-/// A domain point in its face: quad, u from corner 0 to 1 and v from corner 0 to 3; triangle, weights of
-/// corners 0 and 1. Exact for 16-bit fractions.
+/// A domain point in its face: quad, u from corner 0 to 1 and v from corner 0 to 3; triangle,
+/// weights of corners 0 and 1. Exact for 16-bit fractions.
 struct FacePoint {
     float u, v;
 };
@@ -93,8 +94,8 @@ public:
     /// \param topology    of a mesh that the scheme takes; both are read only here
     /// \param parameters  those that differ from their defaults; a wrong name throws Error
     /// Throws LimitError for a patch that no draw can hold.
-    virtual std::unique_ptr<PatchMesh> build(Topology const& topology,
-                                             std::map<std::string, double> const& parameters) const = 0;
+    virtual std::unique_ptr<PatchMesh>
+    build(Topology const& topology, std::map<std::string, double> const& parameters) const = 0;
 };
 
 /// All techniques in the order of the papers.
@@ -102,8 +103,8 @@ std::vector<std::unique_ptr<Technique>> const& techniques();
 /// Throws Error that lists the known names.
 Technique const& find_technique(std::string_view name);
 
-/// A control mesh as a technique takes it: faces with more than 4 sides are split by one Catmull-Clark
-/// step on the whole mesh, with a warning.
+/// A control mesh as a technique takes it: faces with more than 4 sides are split by one
+/// Catmull-Clark step on the whole mesh, with a warning.
 struct PreparedMesh {
     std::unique_ptr<ControlMesh> mesh;
     std::unique_ptr<Topology> topology; ///< of *mesh

@@ -8,7 +8,10 @@
 namespace tessemu {
 
 namespace {
-std::string vertex_name(std::uint32_t v) { return std::to_string(v + 1); }
+std::string vertex_name(std::uint32_t v)
+{
+    return std::to_string(v + 1);
+}
 std::string edge_name(std::uint32_t a, std::uint32_t b)
 {
     return std::to_string(a + 1) + "-" + std::to_string(b + 1);
@@ -36,8 +39,9 @@ Topology::Topology(ControlMesh const& mesh) : mesh_(&mesh)
     for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
         auto const face = mesh.face(f);
         if (face.size() < 3)
-            throw MeshError(f, "face " + std::to_string(f + 1) + " has " + std::to_string(face.size()) +
-                            " vertices, at least 3 are needed");
+            throw MeshError(f, "face " + std::to_string(f + 1) + " has " +
+                                   std::to_string(face.size()) +
+                                   " vertices, at least 3 are needed");
         for (std::uint32_t h = mesh.face_start[f]; h < mesh.face_start[f + 1]; ++h) {
             half_edge_face_[h] = f;
             ++ring_start_[mesh.face_vertices[h] + 1];
@@ -50,32 +54,35 @@ Topology::Topology(ControlMesh const& mesh) : mesh_(&mesh)
 
     ring_index_.resize(corners);
     boundary_.assign(vertices, 0);
-    std::vector<std::pair<std::uint32_t, HalfEdge>> outgoing; // (far end, half-edge), sorted
+    std::vector<std::pair<std::uint32_t, HalfEdge>> outgoing;      // (far end, half-edge), sorted
     std::vector<std::pair<std::uint32_t, std::uint32_t>> incoming; // (near end, face), sorted
     std::vector<HalfEdge> ordered;
     for (std::uint32_t v = 0; v < vertices; ++v) {
-        auto const ring = std::span(ring_).subspan(ring_start_[v], ring_start_[v + 1] - ring_start_[v]);
+        auto const ring =
+            std::span(ring_).subspan(ring_start_[v], ring_start_[v + 1] - ring_start_[v]);
         if (ring.empty()) continue;
         outgoing.clear(), incoming.clear(), ordered.clear();
         for (HalfEdge h : ring) {
             outgoing.emplace_back(vertex_of(next(h)), h);
             incoming.emplace_back(vertex_of(previous(h)), face_of(h));
             if (outgoing.back().first == v || incoming.back().first == v)
-                throw MeshError(face_of(h), "face " + std::to_string(face_of(h) + 1) + " names vertex " +
-                                vertex_name(v) + " twice");
+                throw MeshError(face_of(h), "face " + std::to_string(face_of(h) + 1) +
+                                                " names vertex " + vertex_name(v) + " twice");
         }
         std::sort(outgoing.begin(), outgoing.end());
         std::sort(incoming.begin(), incoming.end());
         for (std::size_t i = 0; i + 1 < outgoing.size(); ++i) {
-            std::uint32_t const f = face_of(outgoing[i].second), g = face_of(outgoing[i + 1].second);
+            std::uint32_t const f = face_of(outgoing[i].second),
+                                g = face_of(outgoing[i + 1].second);
             if (f == g)
-                throw MeshError(f, "face " + std::to_string(f + 1) + " names vertex " + vertex_name(v) +
-                                " twice");
+                throw MeshError(f, "face " + std::to_string(f + 1) + " names vertex " +
+                                       vertex_name(v) + " twice");
             if (outgoing[i].first == outgoing[i + 1].first)
-                throw MeshError(std::max(f, g), "edge " + edge_name(v, outgoing[i].first) +
-                                " is used in the same direction by faces " + std::to_string(f + 1) +
-                                " and " + std::to_string(g + 1) +
-                                ": more than two faces meet there, or one is turned over");
+                throw MeshError(std::max(f, g),
+                                "edge " + edge_name(v, outgoing[i].first) +
+                                    " is used in the same direction by faces " +
+                                    std::to_string(f + 1) + " and " + std::to_string(g + 1) +
+                                    ": more than two faces meet there, or one is turned over");
         }
         for (std::size_t i = 0; i + 1 < incoming.size(); ++i)
             if (incoming[i].first == incoming[i + 1].first)
@@ -97,17 +104,18 @@ Topology::Topology(ControlMesh const& mesh) : mesh_(&mesh)
         for (HalfEdge h = start;;) {
             ordered.push_back(h);
             std::uint32_t const wanted = vertex_of(previous(h));
-            auto const it = std::lower_bound(outgoing.begin(), outgoing.end(),
-                                             std::pair(wanted, HalfEdge(0)));
+            auto const it =
+                std::lower_bound(outgoing.begin(), outgoing.end(), std::pair(wanted, HalfEdge(0)));
             if (it == outgoing.end() || it->first != wanted || it->second == start) break;
             h = it->second;
             if (ordered.size() > ring.size()) break;
         }
         if (ordered.size() != ring.size())
-            throw MeshError(face_of(ring[0]),
-                            "the faces around vertex " + vertex_name(v) +
-                            " form more than one fan (" + std::to_string(ordered.size()) + " of " +
-                            std::to_string(ring.size()) + " faces are connected through edges)");
+            throw MeshError(face_of(ring[0]), "the faces around vertex " + vertex_name(v) +
+                                                  " form more than one fan (" +
+                                                  std::to_string(ordered.size()) + " of " +
+                                                  std::to_string(ring.size()) +
+                                                  " faces are connected through edges)");
         for (std::uint32_t j = 0; j < ordered.size(); ++j) {
             ring[j] = ordered[j];
             ring_index_[ordered[j]] = j;

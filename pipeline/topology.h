@@ -1,8 +1,8 @@
 // Topology of a control mesh: rings, two-rings, sectors, and what is wrong with it.
 //
 // A ring lists the faces around a vertex counter-clockwise; face j lies between edge j and edge j+1
-// (sheet section 1). An interior ring starts at the edge to the smallest neighbour, a boundary ring at
-// the edge that has a face only on its left.
+// (sheet section 1). An interior ring starts at the edge to the smallest neighbour, a boundary ring
+// at the edge that has a face only on its left.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -23,9 +23,9 @@ using HalfEdge = std::uint32_t;
 
 class Topology {
 public:
-    /// Builds rings in time linear in the corners (times the log of the valence). Throws MeshError for
-    /// a face with fewer than 3 or with repeated vertices, an edge with more than two faces or with
-    /// faces of opposite orientation, and a vertex whose faces form more than one fan.
+    /// Builds rings in time linear in the corners (times the log of the valence). Throws MeshError
+    /// for a face with fewer than 3 or with repeated vertices, an edge with more than two faces or
+    /// with faces of opposite orientation, and a vertex whose faces form more than one fan.
     explicit Topology(ControlMesh const& mesh);
 
     ControlMesh const& mesh() const { return *mesh_; }
@@ -38,7 +38,8 @@ public:
     /// The ring of a vertex: half-edge j starts at the vertex and runs along edge j, in face j.
     std::span<HalfEdge const> ring(std::uint32_t vertex) const
     {
-        return std::span(ring_).subspan(ring_start_[vertex], ring_start_[vertex + 1] - ring_start_[vertex]);
+        return std::span(ring_).subspan(ring_start_[vertex],
+                                        ring_start_[vertex + 1] - ring_start_[vertex]);
     }
     bool is_boundary(std::uint32_t vertex) const { return boundary_[vertex]; }
     /// Edges at a vertex: its faces, and one more on the boundary.

@@ -1,8 +1,8 @@
 // Domain shaders of the Gregory scheme: regular quads, Gregory quads, Gregory triangles.
 //
 // Inside the patch the scheme's evaluation; on its edges and corners the watertight recipe. Quad
-// domain: corners p0 (0,0), p1 (1,0), p2 (1,1), p3 (0,1). Tri domain: u = 1 at p0, v = 1 at p1, w = 1
-// at p2.
+// domain: corners p0 (0,0), p1 (1,0), p2 (1,1), p3 (0,1). Tri domain: u = 1 at p0, v = 1 at p1, w =
+// 1 at p2.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -1,5 +1,5 @@
-// Gregory quad patch, LOOP09 section 3: 20 control points, a bicubic whose four interior points depend
-// on (u,v).
+// Gregory quad patch, LOOP09 section 3: 20 control points, a bicubic whose four interior points
+// depend on (u,v).
 //
 //     p3 --e3-- . --e2+-- p2        v
 //     |   f3-  f3+ f2- f2+ |        |
@@ -8,8 +8,8 @@
 //     |   f0-  f0+ f1- f1+ |
 //     p0 --e0+- . --e1--- p1
 //
-// Control points: p 0..3, e+ 4..7, e- 8..11, f+ 12..15, f- 16..19; corner i's "+" belongs to the edge
-// to corner i+1, its "-" to the edge to corner i-1.
+// Control points: p 0..3, e+ 4..7, e- 8..11, f+ 12..15, f- 16..19; corner i's "+" belongs to the
+// edge to corner i+1, its "-" to the edge to corner i-1.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -56,7 +56,8 @@ template <class T> struct BlendedFacePoint {
 /// Gregory quad patch at (u,v): Q = B3(u) G B3(v).
 ///
 /// \param patch         20 control points, object space; each is fetched once
-/// \param true_normals  tangents of the rational surface; otherwise those of the Bezier patch with F
+/// \param true_normals  tangents of the rational surface; otherwise those of the Bezier patch with
+/// F
 ///                      frozen at (u,v) (LOOP09 4.4), equal to them on the edges
 /// \returns             position and derivatives along u and v
 /// \cost                frozen: 188 mul, 4 div (with the cross product 194 + 4 = 198)

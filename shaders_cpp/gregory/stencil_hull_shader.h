@@ -3,10 +3,11 @@
 //
 //     out_row = sum over k of W[type][order[k]][row] * in[order[k]]
 //
-// The sum runs in ascending global vertex id, through an order index stored per patch, so that points
-// which two patches share have equal bits in both. A bit mask per row tells the zero weights apart; they are
-// skipped. Rows: the control points, then the transversal fields of the edges (4 an edge), then the
-// tangents of the corners (a pair for each place where the corner's ring may begin).
+// The sum runs in ascending global vertex id, through an order index stored per patch, so that
+// points which two patches share have equal bits in both. A bit mask per row tells the zero weights
+// apart; they are skipped. Rows: the control points, then the transversal fields of the edges (4 an
+// edge), then the tangents of the corners (a pair for each place where the corner's ring may
+// begin).
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -35,11 +36,12 @@ template <TessellatorDomain kDomain_, class Weight = float> struct StencilHullSh
     template <class T> using ControlPoint = ControlVertex<T>;
     template <class T> using PatchConstant = EdgeRegister<T>;
 
-    int points = 20;                   ///< output control points
-    Buffer<Weight> weights;            ///< [type][input][row]
-    Buffer<std::uint32_t> zero_masks;  ///< [type][row]: bit i set where the weight of input i is not 0
-    Buffer<std::uint32_t> patches;     ///< [patch][StencilPatchWords]
-    Buffer<std::uint8_t> order;        ///< [patch][k]: inputs in ascending global vertex id
+    int points = 20;        ///< output control points
+    Buffer<Weight> weights; ///< [type][input][row]
+    Buffer<std::uint32_t>
+        zero_masks;                ///< [type][row]: bit i set where the weight of input i is not 0
+    Buffer<std::uint32_t> patches; ///< [patch][StencilPatchWords]
+    Buffer<std::uint8_t> order;    ///< [patch][k]: inputs in ascending global vertex id
     std::array<float, 6> factors{1, 1, 1, 1, 1, 1}; ///< uniform tess factors
 
     int control_points() const { return points; }
@@ -68,13 +70,12 @@ template <TessellatorDomain kDomain_, class Weight = float> struct StencilHullSh
         float3<T> sum(T(0), T(0), T(0));
         for (int k : loop<T>(in.size())) {
             std::int32_t const i = load<T>(order, id * in.size() + k);
-            sum = when(
-                ((mask >> Int(i)) & Int(1)) != Int(0),
-                [&]() -> float3<T> {
-                    T const w = load<T>(weights, first_weight + Int(i * rows));
-                    return sum + w * in[i].position;
-                },
-                sum);
+            sum = when(((mask >> Int(i)) & Int(1)) != Int(0),
+                       [&]() -> float3<T> {
+                           T const w = load<T>(weights, first_weight + Int(i * rows));
+                           return sum + w * in[i].position;
+                       },
+                       sum);
         }
         return sum;
     }
@@ -86,8 +87,8 @@ template <TessellatorDomain kDomain_, class Weight = float> struct StencilHullSh
         return {stencil_row<T>(patch, in, id)};
     }
 
-    /// Edge registers in canonical direction: reversing an edge reverses the order of its four vectors
-    /// and their signs, W_m = +-E_(3-m).
+    /// Edge registers in canonical direction: reversing an edge reverses the order of its four
+    /// vectors and their signs, W_m = +-E_(3-m).
     template <class T>
     EdgeRegister<T> patch_constant(PatchInput patch, ControlPoints<ControlVertex<T>> const& in,
                                    ControlPoints<ControlVertex<T>> const&, int_of<T> id) const

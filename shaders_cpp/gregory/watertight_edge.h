@@ -1,8 +1,10 @@
-// Patch edges with equal bits from both sides: LOOP09 section 4.5, worked out for positions and normals.
+// Patch edges with equal bits from both sides: LOOP09 section 4.5, worked out for positions and
+// normals.
 //
-// Both patches evaluate the same cubic (p, e, e, p) of shared control points and the same normal field
-// N(t) = u(t) x W(t), in the edge's canonical direction (from the smaller to the larger vertex id), by
-// the same routine. W is the mean of the two inward transversal fields, a cubic of vertex data only.
+// Both patches evaluate the same cubic (p, e, e, p) of shared control points and the same normal
+// field N(t) = u(t) x W(t), in the edge's canonical direction (from the smaller to the larger
+// vertex id), by the same routine. W is the mean of the two inward transversal fields, a cubic of
+// vertex data only.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -13,8 +15,9 @@ namespace tessemu {
 
 /// A register of the patch constants.
 ///
-/// Registers 4k + m, m = 0..3, hold the transversal field W of edge k (corner k to k+1) in canonical
-/// direction; after those of all edges, registers 2i and 2i + 1 hold two tangents of corner i.
+/// Registers 4k + m, m = 0..3, hold the transversal field W of edge k (corner k to k+1) in
+/// canonical direction; after those of all edges, registers 2i and 2i + 1 hold two tangents of
+/// corner i.
 template <class T> struct EdgeRegister {
     float3<T> vector;
     T reversed; ///< of the edge: 1 if its canonical direction runs from corner k+1 to k, else 0
@@ -41,7 +44,8 @@ constexpr SurfacePoint<T> edge_point(float3<T> const& pa, float3<T> const& ea, f
     T const b0 = ss * s, b1 = T(3) * T(ss * t), b2 = T(3) * T(tt * s), b3 = tt * t;
     SurfacePoint<T> r;
     r.position = b0 * pa + b1 * ea + b2 * eb + b3 * pb;
-    float3<T> const along = ss * float3<T>(ea - pa) + st2 * float3<T>(eb - ea) + tt * float3<T>(pb - eb);
+    float3<T> const along =
+        ss * float3<T>(ea - pa) + st2 * float3<T>(eb - ea) + tt * float3<T>(pb - eb);
     float3<T> const across = b0 * W[0] + b1 * W[1] + b2 * W[2] + b3 * W[3];
     r.normal = cross(along, across);
     return r;

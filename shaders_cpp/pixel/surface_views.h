@@ -14,7 +14,8 @@ template <class T> struct SurfaceAttributes {
     static constexpr auto signature() { return std::tuple{&SurfaceAttributes::normal}; }
 };
 
-/// The interpolated normal, unit length, turned towards the viewer on back faces; 0 where there is none.
+/// The interpolated normal, unit length, turned towards the viewer on back faces; 0 where there is
+/// none.
 template <class T>
 float3<T> facing_normal(PixelInput<T> const& pixel, SurfaceAttributes<T> const& in)
 {

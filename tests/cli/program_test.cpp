@@ -37,10 +37,11 @@ fs::path scratch()
 Result run(std::string const& arguments)
 {
     fs::path const out = scratch() / "stdout", err = scratch() / "stderr";
-    std::string const command = std::string(TESSEMU_PROGRAM) + " " + arguments + " >" + out.string() + " 2>" +
-                                err.string() + " </dev/null";
+    std::string const command = std::string(TESSEMU_PROGRAM) + " " + arguments + " >" +
+                                out.string() + " 2>" + err.string() + " </dev/null";
     int const status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::read_text(out), test::read_text(err)};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::read_text(out),
+            test::read_text(err)};
 }
 
 Json draw_json(std::string const& arguments)
@@ -109,7 +110,8 @@ TEST(Program, BadUsageExitsTwoWithOneLineThatNamesTheValue)
 TEST(Program, DrawWritesPictureTableAndJson)
 {
     fs::path const picture = scratch() / "jug.png", json = scratch() / "jug.json";
-    Result const r = run("draw jug --size 64x48 -o " + picture.string() + " --json " + json.string());
+    Result const r =
+        run("draw jug --size 64x48 -o " + picture.string() + " --json " + json.string());
     ASSERT_EQ(r.status, 0) << r.err;
     EXPECT_TRUE(r.err.empty()) << r.err;
     EXPECT_NE(r.out.find("domain_shader"), std::string::npos);
@@ -129,10 +131,13 @@ TEST(Program, TheHashDoesNotDependOnThreadsLanesOrWhereTheModelLies)
 {
     fs::path const copy = scratch() / "sub";
     fs::create_directories(copy);
-    std::ofstream(copy / "star.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nf 1 2 3 4\nt oddity 0/0/0\n";
+    std::ofstream(copy / "star.obj")
+        << "v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nf 1 2 3 4\nt oddity 0/0/0\n";
     fs::copy_file(copy / "star.obj", scratch() / "star.obj", fs::copy_options::overwrite_existing);
-    Json const a = draw_json((copy / "star.obj").string() + " --size 80x60 --tess 3.7 -j 1 --lanes 4");
-    Json const b = draw_json((scratch() / "star.obj").string() + " --size 80x60 --tess 3.7 -j 3 --lanes 16");
+    Json const a =
+        draw_json((copy / "star.obj").string() + " --size 80x60 --tess 3.7 -j 1 --lanes 4");
+    Json const b =
+        draw_json((scratch() / "star.obj").string() + " --size 80x60 --tess 3.7 -j 3 --lanes 16");
     EXPECT_EQ(a["hash"], b["hash"]);
     EXPECT_EQ(a["warnings"], b["warnings"]);
     EXPECT_EQ(a["warnings"].size(), 1u);
@@ -160,8 +165,9 @@ TEST(Program, TessellateBatchAnswersTheGoldenCases)
 TEST(Program, AMalformedBatchLineIsNamed)
 {
     fs::path const batch = scratch() / "batch.txt";
-    for (char const* bad : {"quad integer", "quad integer triangle_cw 3f800000", "cube integer point 0",
-                            "tri integer point 3f800000 3f800000 3f800000 zzzzzzzz", ""}) {
+    for (char const* bad :
+         {"quad integer", "quad integer triangle_cw 3f800000", "cube integer point 0",
+          "tri integer point 3f800000 3f800000 3f800000 zzzzzzzz", ""}) {
         std::ofstream(batch) << "isoline integer line 3f800000 3f800000\n" << bad << "\n";
         Result const r = run("tessellate --batch " + batch.string());
         EXPECT_EQ(r.status, 2) << bad;
@@ -193,7 +199,8 @@ TEST(Program, ExportWeldsAndNamesWhatItCannotHonour)
 {
     fs::path const cage = scratch() / "creased.obj";
     std::ofstream(cage) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nt crease 2/1/0 0 1 3\n";
-    Result const r = run("export " + cage.string() + " --tess 2 --weld -o " + (scratch() / "c.obj").string());
+    Result const r =
+        run("export " + cage.string() + " --tess 2 --weld -o " + (scratch() / "c.obj").string());
     EXPECT_EQ(r.status, 0);
     EXPECT_NE(r.err.find("crease"), std::string::npos);
 }
@@ -209,7 +216,8 @@ TEST(Program, BadFilesBehaveAsTheTableSays)
         if (line.starts_with("#") || line.starts_with("file\t")) continue;
         std::istringstream row(line);
         std::string file, outcome, group, check;
-        std::getline(row, file, '\t'), std::getline(row, outcome, '\t'), std::getline(row, group, '\t');
+        std::getline(row, file, '\t'), std::getline(row, outcome, '\t'),
+            std::getline(row, group, '\t');
         std::getline(row, check, '\t');
         std::string const path = test::shared("models/bad/" + file).string();
         fs::path const mesh = scratch() / "bad.obj";

@@ -14,7 +14,8 @@ namespace {
 using All = Contracted<float, policy::All>;
 using Mixed = Contracted<float, policy::Mixed>;
 
-float const a = 1.0f + 0x1p-12f, c = -(1.0f + 0x1p-11f); // a * a + c: 0 in two roundings, 2^-24 in one
+float const a = 1.0f + 0x1p-12f,
+            c = -(1.0f + 0x1p-11f); // a * a + c: 0 in two roundings, 2^-24 in one
 
 TEST(Contracted, AllFusesAProductThatFeedsASum)
 {
@@ -94,7 +95,8 @@ TEST(Mixed, EveryTurnOfALoopDecidesAlike)
     site_state = {};
 }
 
-// What follows a branch or a loop does not depend on whether the branch ran or how often the loop turned.
+// What follows a branch or a loop does not depend on whether the branch ran or how often the loop
+// turned.
 TEST(Mixed, SitesAfterABranchDoNotMove)
 {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -102,7 +104,8 @@ TEST(Mixed, SitesAfterABranchDoNotMove)
         for (int taken = 0; taken < 2; ++taken) {
             site_state = {seed, 0, 0};
             Mixed const x(a), y(c);
-            (void)when(taken != 0, [&] { return Mixed(x * x + y); }, x);
+            (void)when(
+                taken != 0, [&] { return Mixed(x * x + y); }, x);
             for (int i : loop<Mixed>(taken ? 3 : 0)) (void)i, (void)Mixed(x * x + y);
             after[taken] = Mixed(x * x + y).value;
         }

@@ -40,7 +40,8 @@ TEST(Counted, CountsDoNotDependOnHowInvocationsAreGrouped)
         EXPECT_EQ(count_branchy<4>(n), scalar) << n;
         EXPECT_EQ(count_branchy<8>(n), scalar) << n;
         EXPECT_EQ(count_branchy<16>(n), scalar) << n;
-        FlopCount expected{.add = std::uint64_t(n), .mul = std::uint64_t(n), .compare = std::uint64_t(n)};
+        FlopCount expected{
+            .add = std::uint64_t(n), .mul = std::uint64_t(n), .compare = std::uint64_t(n)};
         for (int i = 0; i < n; ++i)
             if (i % 7 < 4) ++expected.add, ++expected.div, ++expected.sqrt;
         EXPECT_EQ(scalar, expected) << n;
@@ -60,7 +61,8 @@ TEST(When, SkipsWorkThatNoLaneNeedsAndNests)
     execution.activate(0xff);
     T const x(Lanes<8>(1.0f));
     int runs = 0;
-    (void)when(x.value > Lanes<8>(2.0f), [&] { return ++runs, x; }, x);
+    (void)when(
+        x.value > Lanes<8>(2.0f), [&] { return ++runs, x; }, x);
     EXPECT_EQ(runs, 0);
     Lanes<8> ramp;
     for (int i = 0; i < 8; ++i) ramp.raw[i] = float(i);

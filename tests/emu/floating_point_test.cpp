@@ -35,9 +35,7 @@ TEST(DenormalMode, FlushesInputsAndResultsAndIsRestored)
 TEST(DenormalMode, BelongsToTheThread)
 {
     bool kept = false;
-    std::thread worker([&] {
-        DenormalMode const flush(DenormalMode::Flush);
-    });
+    std::thread worker([&] { DenormalMode const flush(DenormalMode::Flush); });
     worker.join();
     volatile float tiny = 1e-40f;
     kept = tiny * 1.0f != 0.0f;

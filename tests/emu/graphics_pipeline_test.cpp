@@ -25,12 +25,18 @@ template <class T> struct Register {
 struct PassThrough {
     template <class T> using Input = Vertex<T>;
     template <class T> using Output = Vertex<T>;
-    template <class T> Vertex<T> operator()(VertexInput<T> const&, Vertex<T> const& v) const { return v; }
+    template <class T> Vertex<T> operator()(VertexInput<T> const&, Vertex<T> const& v) const
+    {
+        return v;
+    }
 };
 
 struct FlatColor {
     template <class T> using Input = Color<T>;
-    template <class T> float4<T> operator()(PixelInput<T> const&, Color<T> const& in) const { return {in.color, T(1)}; }
+    template <class T> float4<T> operator()(PixelInput<T> const&, Color<T> const& in) const
+    {
+        return {in.color, T(1)};
+    }
 };
 
 struct Hull {
@@ -42,17 +48,20 @@ struct Hull {
     float edge = 2;
     int control_points() const { return points; }
     int patch_constants() const { return registers; }
-    template <class T> Vertex<T> control_point(PatchInput, ControlPoints<Vertex<T>> const& in, int_of<T> id) const
+    template <class T>
+    Vertex<T> control_point(PatchInput, ControlPoints<Vertex<T>> const& in, int_of<T> id) const
     {
         return in[id];
     }
     template <class T>
-    Register<T> patch_constant(PatchInput, ControlPoints<Vertex<T>> const&, ControlPoints<Vertex<T>> const&, int_of<T>) const
+    Register<T> patch_constant(PatchInput, ControlPoints<Vertex<T>> const&,
+                               ControlPoints<Vertex<T>> const&, int_of<T>) const
     {
         return {};
     }
     template <class T>
-    std::array<T, 6> tess_factors(PatchInput in, ControlPoints<Vertex<T>> const&, ControlPoints<Vertex<T>> const&,
+    std::array<T, 6> tess_factors(PatchInput in, ControlPoints<Vertex<T>> const&,
+                                  ControlPoints<Vertex<T>> const&,
                                   ControlPoints<Register<T>> const&) const
     {
         T const f(in.primitive_id == 1 ? 0.0f : edge); // the second patch is culled
@@ -67,11 +76,14 @@ template <int kPoints> struct Bilinear {
     template <class T> using PatchConstant = Register<T>;
     template <class T> using Output = Vertex<T>;
     template <class T>
-    Vertex<T> operator()(DomainInput<T> const& in, ControlPoints<Vertex<T>> const& p, ControlPoints<Register<T>> const&) const
+    Vertex<T> operator()(DomainInput<T> const& in, ControlPoints<Vertex<T>> const& p,
+                         ControlPoints<Register<T>> const&) const
     {
         T const U = T(1) - in.u, V = T(1) - in.v;
         Vertex<T> const a = p[0], b = p[1], c = p[2], d = p[3];
-        return {V * (U * a.position + in.u * b.position) + in.v * (U * d.position + in.u * c.position), a.color};
+        return {V * (U * a.position + in.u * b.position) +
+                    in.v * (U * d.position + in.u * c.position),
+                a.color};
     }
 };
 
@@ -109,7 +121,8 @@ TEST(GraphicsPipeline, RefusesWhatD3D11RefusesAndNamesValueAndLimit)
     expect_refused(d, "output control points is 33, the limit is 32");
     // R49: 128 scalars of patch constants, six tess factors included: 30 registers fit, 31 do not.
     EXPECT_NO_THROW(GraphicsPipeline{patch_desc(Hull{4, 30})});
-    expect_refused(patch_desc(Hull{4, 31}), "patch constants, tess factors included is 130, the limit is 128");
+    expect_refused(patch_desc(Hull{4, 31}),
+                   "patch constants, tess factors included is 130, the limit is 128");
     d = patch_desc();
     d.domain_shader = nullptr;
     expect_refused(d, "R3");
@@ -145,7 +158,8 @@ DrawStatistics draw_patches(std::size_t patches, VertexCacheModel cache, RenderT
 
 TEST(PipelineStatistics, FollowRulesR42R43R156ToR163)
 {
-    for (auto kind : {VertexCacheModel::Kind::None, VertexCacheModel::Kind::Fifo, VertexCacheModel::Kind::Infinite}) {
+    for (auto kind : {VertexCacheModel::Kind::None, VertexCacheModel::Kind::Fifo,
+                      VertexCacheModel::Kind::Infinite}) {
         RenderTarget target(64, 64);
         PipelineStatistics const p = draw_patches(3, {kind, 16}, target).pipeline;
         EXPECT_EQ(p.IAVertices, 12u);
@@ -175,8 +189,9 @@ TEST(PipelineStatistics, NonIndexedVerticesNeverHitTheCache) // rule R42
     d.pixel_shader = make_pixel_program(FlatColor{}, {});
     RenderTarget target(16, 16);
     RasterTarget const raster{&target, {0, 0, 16, 16, 0, 1}, {CullMode::None, false, false, {}}};
-    PipelineStatistics const p =
-        draw(GraphicsPipeline(d), call, &raster, {}, ThreadPool(1), {{VertexCacheModel::Kind::Infinite, 0}, {}}).pipeline;
+    PipelineStatistics const p = draw(GraphicsPipeline(d), call, &raster, {}, ThreadPool(1),
+                                      {{VertexCacheModel::Kind::Infinite, 0}, {}})
+                                     .pipeline;
     EXPECT_EQ(p.VSInvocations, 6u);
     EXPECT_EQ(p.CInvocations, 2u);
 }
@@ -189,9 +204,11 @@ TEST(Draw, WithoutATargetRasterizationIsOff) // rule R5
     call.vertex_floats = 7;
     call.vertex_count = 4;
     std::size_t visited = 0;
-    PipelineStatistics const p = draw(GraphicsPipeline(patch_desc()), call, nullptr,
-                                      [&](ShadedPatch const& s) { visited += s.points->patch.points(); }, ThreadPool(1))
-                                     .pipeline;
+    PipelineStatistics const p =
+        draw(
+            GraphicsPipeline(patch_desc()), call, nullptr,
+            [&](ShadedPatch const& s) { visited += s.points->patch.points(); }, ThreadPool(1))
+            .pipeline;
     EXPECT_EQ(p.CInvocations, 0u);
     EXPECT_EQ(p.CPrimitives, 0u);
     EXPECT_EQ(p.PSInvocations, 0u);
@@ -207,10 +224,14 @@ TEST(Draw, ReadsZeroPastTheVertexBuffer) // rule R35
     call.vertex_floats = 7;
     call.indices = std::span<std::uint32_t const>(indices);
     float last = -1;
-    draw(GraphicsPipeline(patch_desc()), call, nullptr, [&](ShadedPatch const& s) {
-        for (std::size_t i = 0; i < s.points->patch.points(); ++i)
-            if (s.points->u[i] == 0 && s.points->v[i] == 1) last = s.outputs[3 * s.stride + i]; // w of vertex 77
-    }, ThreadPool(1));
+    draw(
+        GraphicsPipeline(patch_desc()), call, nullptr,
+        [&](ShadedPatch const& s) {
+            for (std::size_t i = 0; i < s.points->patch.points(); ++i)
+                if (s.points->u[i] == 0 && s.points->v[i] == 1)
+                    last = s.outputs[3 * s.stride + i]; // w of vertex 77
+        },
+        ThreadPool(1));
     EXPECT_EQ(last, 0.0f);
 }
 
@@ -242,10 +263,13 @@ TEST(Draw, ShadersFlushDenormals)
     call.vertex_floats = 7;
     call.indices = std::span<std::uint32_t const>(indices);
     std::size_t not_flushed = 0;
-    draw(GraphicsPipeline(patch_desc()), call, nullptr, [&](ShadedPatch const& s) {
-        for (std::size_t i = 0; i < s.points->patch.points(); ++i)
-            not_flushed += (std::bit_cast<std::uint32_t>(s.outputs[i]) & 0x7fffffffu) != 0;
-    }, ThreadPool(3));
+    draw(
+        GraphicsPipeline(patch_desc()), call, nullptr,
+        [&](ShadedPatch const& s) {
+            for (std::size_t i = 0; i < s.points->patch.points(); ++i)
+                not_flushed += (std::bit_cast<std::uint32_t>(s.outputs[i]) & 0x7fffffffu) != 0;
+        },
+        ThreadPool(3));
     EXPECT_EQ(not_flushed, 0u);
 }
 

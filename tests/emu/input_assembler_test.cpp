@@ -6,7 +6,8 @@
 namespace tessemu {
 namespace {
 
-TEST(InputAssembler, DropsPartialPrimitives) // rule R29: 32-point patches and 63 vertices are one patch
+TEST(InputAssembler,
+     DropsPartialPrimitives) // rule R29: 32-point patches and 63 vertices are one patch
 {
     DrawCall call;
     call.control_points = 32;

@@ -10,20 +10,30 @@
 namespace tessemu {
 namespace {
 
-std::uint32_t bits(float x) { return std::bit_cast<std::uint32_t>(x); }
+std::uint32_t bits(float x)
+{
+    return std::bit_cast<std::uint32_t>(x);
+}
 
 // Any float, special values often.
 rc::Gen<float> any_float()
 {
-    return rc::gen::map(rc::gen::pair(rc::gen::inRange(0, 4), rc::gen::arbitrary<std::uint32_t>()), [](auto const& p) {
-        float const special[] = {0.0f, -0.0f, 1.0f, -1.0f, 1e-40f, -1e-40f, INFINITY, -INFINITY, NAN, 0.5f};
-        return p.first == 0 ? special[p.second % 10] : std::bit_cast<float>(p.second);
-    });
+    return rc::gen::map(rc::gen::pair(rc::gen::inRange(0, 4), rc::gen::arbitrary<std::uint32_t>()),
+                        [](auto const& p) {
+                            float const special[] = {0.0f,    -0.0f,    1.0f,      -1.0f, 1e-40f,
+                                                     -1e-40f, INFINITY, -INFINITY, NAN,   0.5f};
+                            return p.first == 0 ? special[p.second % 10]
+                                                : std::bit_cast<float>(p.second);
+                        });
 }
 
-bool same(float a, float b) { return bits(a) == bits(b) || (std::isnan(a) && std::isnan(b)); }
+bool same(float a, float b)
+{
+    return bits(a) == bits(b) || (std::isnan(a) && std::isnan(b));
+}
 
-template <class L> class LanesOf : public testing::Test {};
+template <class L> class LanesOf : public testing::Test {
+};
 using Widths = testing::Types<Lanes<4>, Lanes<8>, Lanes<16>>;
 TYPED_TEST_SUITE(LanesOf, Widths);
 
@@ -40,7 +50,8 @@ TYPED_TEST(LanesOf, EveryOperationEqualsTheScalarBitForBit)
             z.raw[i] = c[i] = *any_float();
         }
         L const sum = x + y, difference = x - y, product = x * y, quotient = x / y, negative = -x;
-        L const root = sqrt(x), low = floor(x), magnitude = abs(x), least = min(x, y), most = max(x, y);
+        L const root = sqrt(x), low = floor(x), magnitude = abs(x), least = min(x, y),
+                most = max(x, y);
         L const fused = mad(x, y, z), chosen = select(x < y, x, y);
         auto const less = (x < y).bits();
         for (int i = 0; i < N; ++i) {
@@ -100,7 +111,8 @@ RC_GTEST_PROP(FusedMultiplyAdd, ExactFallbackEqualsTheInstruction, ())
 {
     float const a = *any_float(), b = *any_float();
     float const close = -a * b; // cancellation is where double rounding would show
-    float const c = *rc::gen::oneOf(any_float(), rc::gen::just(close), rc::gen::just(std::nextafter(close, 1.0f)));
+    float const c = *rc::gen::oneOf(any_float(), rc::gen::just(close),
+                                    rc::gen::just(std::nextafter(close, 1.0f)));
     float const exact = fused_multiply_add_exact(a, b, c);
 #ifdef __FMA__
     RC_ASSERT(same(exact, __builtin_fmaf(a, b, c)));

@@ -20,7 +20,10 @@ template <class T> struct Out {
 struct PassThroughVertex {
     template <class T> using Input = Point<T>;
     template <class T> using Output = Point<T>;
-    template <class T> Point<T> operator()(VertexInput<T> const&, Point<T> const& p) const { return p; }
+    template <class T> Point<T> operator()(VertexInput<T> const&, Point<T> const& p) const
+    {
+        return p;
+    }
 };
 
 struct QuadHull {
@@ -31,17 +34,20 @@ struct QuadHull {
     float factor = 1;
     int control_points() const { return 4; }
     int patch_constants() const { return 0; }
-    template <class T> Point<T> control_point(PatchInput, ControlPoints<Point<T>> const& in, int_of<T> id) const
+    template <class T>
+    Point<T> control_point(PatchInput, ControlPoints<Point<T>> const& in, int_of<T> id) const
     {
         return in[id]; // a record per lane
     }
     template <class T>
-    Point<T> patch_constant(PatchInput, ControlPoints<Point<T>> const&, ControlPoints<Point<T>> const&, int_of<T>) const
+    Point<T> patch_constant(PatchInput, ControlPoints<Point<T>> const&,
+                            ControlPoints<Point<T>> const&, int_of<T>) const
     {
         return {};
     }
     template <class T>
-    std::array<T, 6> tess_factors(PatchInput, ControlPoints<Point<T>> const&, ControlPoints<Point<T>> const&,
+    std::array<T, 6> tess_factors(PatchInput, ControlPoints<Point<T>> const&,
+                                  ControlPoints<Point<T>> const&,
                                   ControlPoints<Point<T>> const&) const
     {
         T const f(factor);
@@ -49,8 +55,8 @@ struct QuadHull {
     }
 };
 
-// Fetches control point 0 twice for every point, control point 1 once where u < 1/2, a buffer element per
-// lane where v = 0, and a texel everywhere.
+// Fetches control point 0 twice for every point, control point 1 once where u < 1/2, a buffer
+// element per lane where v = 0, and a texel everywhere.
 struct FetchingDomain {
     static constexpr TessellatorDomain kDomain = TessellatorDomain::Quad;
     static constexpr int kControlPoints = 4;
@@ -63,21 +69,25 @@ struct FetchingDomain {
     std::vector<ResourceInfo> resources() const { return {table.info(), texture.info()}; }
 
     template <class T>
-    Out<T> operator()(DomainInput<T> const& in, ControlPoints<Point<T>> const& patch, ControlPoints<Point<T>> const&) const
+    Out<T> operator()(DomainInput<T> const& in, ControlPoints<Point<T>> const& patch,
+                      ControlPoints<Point<T>> const&) const
     {
         using Int = int_of<T>;
         float3<T> p = patch[0].position;
         if (!skip_second) p = p + patch[0].position;
-        p = when(in.u < T(0.5), [&]() -> float3<T> { return p + patch[1].position; }, p);
+        p = when(
+            in.u < T(0.5), [&]() -> float3<T> { return p + patch[1].position; }, p);
         T const extra = when(
-            in.v == T(0), [&]() -> T { return load<T>(table, select(in.u == T(0), Int(2), Int(99))); }, T(0));
+            in.v == T(0),
+            [&]() -> T { return load<T>(table, select(in.u == T(0), Int(2), Int(99))); }, T(0));
         float4<T> const texel = load<T>(texture, Int(1), Int(0));
         return {float4<T>(p, T(extra + texel.x))};
     }
 };
 
 struct Counts {
-    std::uint64_t control_points, control_point_bytes, unique_control_point_bytes, table, unique_table, texels;
+    std::uint64_t control_points, control_point_bytes, unique_control_point_bytes, table,
+        unique_table, texels;
     std::uint64_t unique_texels;
 };
 
@@ -108,7 +118,8 @@ Counts run(int lanes, int threads, bool skip_second)
         if (stage.stage != "domain_shader") continue;
         for (FetchStatistics const& f : stage.fetches) {
             if (f.resource == "control_points")
-                c.control_points = f.count, c.control_point_bytes = f.bytes, c.unique_control_point_bytes = f.unique_bytes;
+                c.control_points = f.count, c.control_point_bytes = f.bytes,
+                c.unique_control_point_bytes = f.unique_bytes;
             if (f.resource == "table") c.table = f.count, c.unique_table = f.unique_bytes;
             if (f.resource == "texture") c.texels = f.count, c.unique_texels = f.unique_bytes;
         }

@@ -23,7 +23,10 @@ template <class T> struct Tag {
 struct PassThrough {
     template <class T> using Input = Vertex<T>;
     template <class T> using Output = Vertex<T>;
-    template <class T> Vertex<T> operator()(VertexInput<T> const&, Vertex<T> const& v) const { return v; }
+    template <class T> Vertex<T> operator()(VertexInput<T> const&, Vertex<T> const& v) const
+    {
+        return v;
+    }
 };
 // Colour: attribute, primitive id, facing.
 struct ShowAttributes {
@@ -42,14 +45,15 @@ struct Scene {
 };
 
 // Triangles given in pixels, with depth and w.
-Scene draw_triangles(std::vector<std::array<float, 4>> const& corners, CullMode cull = CullMode::None,
-                     bool scissor = false, Rect rect = {}, int threads = 2)
+Scene draw_triangles(std::vector<std::array<float, 4>> const& corners,
+                     CullMode cull = CullMode::None, bool scissor = false, Rect rect = {},
+                     int threads = 2)
 {
     std::vector<float> vertices;
     for (std::size_t i = 0; i < corners.size(); ++i) {
         auto const [x, y, z, w] = corners[i];
-        vertices.insert(vertices.end(), {(x / (kSize / 2.0f) - 1) * w, (1 - y / (kSize / 2.0f)) * w, z * w, w,
-                                         float(i % 3), float(i)});
+        vertices.insert(vertices.end(), {(x / (kSize / 2.0f) - 1) * w, (1 - y / (kSize / 2.0f)) * w,
+                                         z * w, w, float(i % 3), float(i)});
     }
     DrawCall call;
     call.topology = PrimitiveTopology::TriangleList;
@@ -70,9 +74,11 @@ rc::Gen<std::vector<std::array<float, 4>>> soup()
 {
     return rc::gen::exec([] {
         std::vector<std::array<float, 4>> t;
-        int const triangles = *rc::gen::inRange(1, 12), scale = *rc::gen::element(8, 64, 2048, kSize * 256);
+        int const triangles = *rc::gen::inRange(1, 12),
+                  scale = *rc::gen::element(8, 64, 2048, kSize * 256);
         for (int i = 0; i < triangles; ++i) {
-            int const cx = *rc::gen::inRange(-2000, kSize * 256 + 2000), cy = *rc::gen::inRange(-2000, kSize * 256 + 2000);
+            int const cx = *rc::gen::inRange(-2000, kSize * 256 + 2000),
+                      cy = *rc::gen::inRange(-2000, kSize * 256 + 2000);
             for (int k = 0; k < 3; ++k)
                 t.push_back({float(cx + *rc::gen::inRange(-scale, scale)) / 256.0f,
                              float(cy + *rc::gen::inRange(-scale, scale)) / 256.0f,
@@ -138,7 +144,8 @@ RC_GTEST_PROP(Rasterizer, FlatTrianglesResolveByDepthThenOrder, ())
 RC_GTEST_PROP(Rasterizer, ThreadsDoNotChangeABit, ())
 {
     auto const t = *soup();
-    Scene const a = draw_triangles(t, CullMode::None, false, {}, 1), b = draw_triangles(t, CullMode::None, false, {}, 3);
+    Scene const a = draw_triangles(t, CullMode::None, false, {}, 1),
+                b = draw_triangles(t, CullMode::None, false, {}, 3);
     for (int y = 0; y < kSize; ++y)
         for (int x = 0; x < kSize; ++x) {
             RC_ASSERT(a.target.color_row(y)[x] == b.target.color_row(y)[x]);
@@ -150,13 +157,16 @@ RC_GTEST_PROP(Rasterizer, ThreadsDoNotChangeABit, ())
 // A fan around a centre, over the whole target: every sample exactly once.
 RC_GTEST_PROP(Rasterizer, ATriangulationWritesEverySampleOnce, ())
 {
-    float const cx = float(*rc::gen::inRange(0, kSize * 256)) / 256, cy = float(*rc::gen::inRange(0, kSize * 256)) / 256;
+    float const cx = float(*rc::gen::inRange(0, kSize * 256)) / 256,
+                cy = float(*rc::gen::inRange(0, kSize * 256)) / 256;
     std::vector<std::array<float, 2>> rim{{0, 0}, {kSize, 0}, {kSize, kSize}, {0, kSize}};
     std::vector<std::array<float, 4>> t;
     for (std::size_t i = 0; i < 4; ++i) {
         auto const a = rim[i], b = rim[(i + 1) % 4];
-        float const z = float(i) / 8; // increasing depth: an overlap would pass only once, so count instead
-        t.push_back({cx, cy, 0.9f - z, 1}), t.push_back({a[0], a[1], 0.9f - z, 1}), t.push_back({b[0], b[1], 0.9f - z, 1});
+        float const z =
+            float(i) / 8; // increasing depth: an overlap would pass only once, so count instead
+        t.push_back({cx, cy, 0.9f - z, 1}), t.push_back({a[0], a[1], 0.9f - z, 1}),
+            t.push_back({b[0], b[1], 0.9f - z, 1});
     }
     Scene const s = draw_triangles(t);
     RC_ASSERT(s.statistics.PSInvocations == std::uint64_t(kSize * kSize));
@@ -165,8 +175,10 @@ RC_GTEST_PROP(Rasterizer, ATriangulationWritesEverySampleOnce, ())
 // The example of the rule book: 36 pixels, each once, in both orientations of the second triangle.
 TEST(Rasterizer, TwoTrianglesOnOneEdgeCoverThirtySixPixels)
 {
-    std::array<float, 4> const p[4] = {{0.5f, 0.49993896484375f, 0.5f, 1}, {0.5f, 6.5f, 0.5f, 1},
-                                       {6.50006103515625f, 0.49993896484375f, 0.5f, 1}, {6.50006103515625f, 6.5f, 0.5f, 1}};
+    std::array<float, 4> const p[4] = {{0.5f, 0.49993896484375f, 0.5f, 1},
+                                       {0.5f, 6.5f, 0.5f, 1},
+                                       {6.50006103515625f, 0.49993896484375f, 0.5f, 1},
+                                       {6.50006103515625f, 6.5f, 0.5f, 1}};
     for (bool turned : {false, true}) {
         std::vector<std::array<float, 4>> t{p[0], p[1], p[2], p[3], p[2], p[1]};
         if (turned) std::swap(t[4], t[5]);
@@ -177,9 +189,11 @@ TEST(Rasterizer, TwoTrianglesOnOneEdgeCoverThirtySixPixels)
 
 TEST(Rasterizer, PositionsSnapToTheNearestEvenTie) // rules R24, R101
 {
-    // A left edge at 10.5 + 1/512 pixel: a tie between 10.5 and 10.5 + 1/256; even is 10.5, and the centre
-    // of pixel 10 then lies on a left edge. At 10.5 + 3/512 the even neighbour is 10.5 + 2/256.
-    for (auto const& [x, covered] : std::vector<std::pair<float, bool>>{{10.5f + 1 / 512.0f, true}, {10.5f + 3 / 512.0f, false}}) {
+    // A left edge at 10.5 + 1/512 pixel: a tie between 10.5 and 10.5 + 1/256; even is 10.5, and the
+    // centre of pixel 10 then lies on a left edge. At 10.5 + 3/512 the even neighbour is 10.5 +
+    // 2/256.
+    for (auto const& [x, covered] : std::vector<std::pair<float, bool>>{
+             {10.5f + 1 / 512.0f, true}, {10.5f + 3 / 512.0f, false}}) {
         Scene const s = draw_triangles({{x, 0, 0.5f, 1}, {60, 0, 0.5f, 1}, {x, 60, 0.5f, 1}});
         EXPECT_EQ(s.target.color_row(5)[10][0] != -1.0f, covered) << x;
     }
@@ -187,7 +201,8 @@ TEST(Rasterizer, PositionsSnapToTheNearestEvenTie) // rules R24, R101
 
 TEST(Rasterizer, CullsByScreenOrientation) // rule R104
 {
-    std::vector<std::array<float, 4>> const clockwise{{10, 10, 0.5f, 1}, {50, 10, 0.5f, 1}, {10, 50, 0.5f, 1}};
+    std::vector<std::array<float, 4>> const clockwise{
+        {10, 10, 0.5f, 1}, {50, 10, 0.5f, 1}, {10, 50, 0.5f, 1}};
     EXPECT_GT(draw_triangles(clockwise, CullMode::Back).statistics.PSInvocations, 0u);
     EXPECT_EQ(draw_triangles(clockwise, CullMode::Front).statistics.PSInvocations, 0u);
     EXPECT_EQ(draw_triangles(clockwise).target.color_row(15)[15][3], 1.0f);
@@ -195,7 +210,8 @@ TEST(Rasterizer, CullsByScreenOrientation) // rule R104
 
 TEST(Rasterizer, TheScissorCutsHalfOpen) // rule R98
 {
-    std::vector<std::array<float, 4>> const all{{0, 0, 0.5f, 1}, {3 * kSize, 0, 0.5f, 1}, {0, 3 * kSize, 0.5f, 1}};
+    std::vector<std::array<float, 4>> const all{
+        {0, 0, 0.5f, 1}, {3 * kSize, 0, 0.5f, 1}, {0, 3 * kSize, 0.5f, 1}};
     Scene const s = draw_triangles(all, CullMode::None, true, {5, 7, 11, 9});
     EXPECT_EQ(s.statistics.PSInvocations, 6u * 2);
     EXPECT_NE(s.target.color_row(7)[5][0], -1.0f);
@@ -221,10 +237,11 @@ TEST(Rasterizer, AttributesArePerspectiveCorrect)
 // Near and far planes cut; the cut triangle counts what is left (R90, R162).
 TEST(Clipping, CutsAtNearAndFarAndCountsPrimitives)
 {
-    std::vector<std::array<float, 4>> const through{{10, 10, -0.5f, 1}, {80, 10, 0.5f, 1}, {10, 80, 0.5f, 1}};
+    std::vector<std::array<float, 4>> const through{
+        {10, 10, -0.5f, 1}, {80, 10, 0.5f, 1}, {10, 80, 0.5f, 1}};
     Scene const s = draw_triangles(through);
     EXPECT_EQ(s.statistics.CInvocations, 1u);
-    EXPECT_EQ(s.statistics.CPrimitives, 2u); // a quad in two
+    EXPECT_EQ(s.statistics.CPrimitives, 2u);         // a quad in two
     EXPECT_EQ(s.target.color_row(11)[11][0], -1.0f); // in front of the near plane
     EXPECT_NE(s.target.color_row(40)[45][0], -1.0f);
     for (int y = 0; y < kSize; ++y)
@@ -239,16 +256,19 @@ TEST(Clipping, CutsAtNearAndFarAndCountsPrimitives)
 
 TEST(Clipping, ATriangleFarBeyondTheGuardBandIsDrawnWhereItIsVisible)
 {
-    std::vector<std::array<float, 4>> const huge{{-1e6f, -1e6f, 0.5f, 1}, {1e6f, -1e6f, 0.5f, 1}, {48, 1e6f, 0.5f, 1}};
+    std::vector<std::array<float, 4>> const huge{
+        {-1e6f, -1e6f, 0.5f, 1}, {1e6f, -1e6f, 0.5f, 1}, {48, 1e6f, 0.5f, 1}};
     Scene const s = draw_triangles(huge);
     EXPECT_EQ(s.statistics.PSInvocations, std::uint64_t(kSize * kSize));
 }
 
 TEST(Clipping, BehindTheEyeNothingIsDrawn)
 {
-    std::vector<std::array<float, 4>> const behind{{10, 10, 0.5f, -1}, {80, 10, 0.5f, -1}, {10, 80, 0.5f, -1}};
+    std::vector<std::array<float, 4>> const behind{
+        {10, 10, 0.5f, -1}, {80, 10, 0.5f, -1}, {10, 80, 0.5f, -1}};
     EXPECT_EQ(draw_triangles(behind).statistics.PSInvocations, 0u);
-    std::vector<std::array<float, 4>> const broken{{10, NAN, 0.5f, 1}, {80, 10, 0.5f, 1}, {10, 80, 0.5f, 1}};
+    std::vector<std::array<float, 4>> const broken{
+        {10, NAN, 0.5f, 1}, {80, 10, 0.5f, 1}, {10, 80, 0.5f, 1}};
     EXPECT_EQ(draw_triangles(broken).statistics.PSInvocations, 0u);
 }
 

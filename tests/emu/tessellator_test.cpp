@@ -27,7 +27,9 @@ Case parse_case(std::string const& line)
     std::istringstream in(line);
     std::string d, p, o, hex;
     in >> d >> p >> o;
-    Case c{{*tessellator_domain_from_name(d), *partitioning_from_name(p), *output_primitive_from_name(o)}, {}};
+    Case c{{*tessellator_domain_from_name(d), *partitioning_from_name(p),
+            *output_primitive_from_name(o)},
+           {}};
     for (std::size_t i = 0; in >> hex; ++i)
         c.factors[i] = std::bit_cast<float>(std::uint32_t(std::stoul(hex, nullptr, 16)));
     return c;
@@ -61,7 +63,8 @@ TEST(Tessellator, AllGoldenCasesMatchBitForBit)
         for (std::uint32_t i : p.indices) indices = fnv(indices, i);
         char text[128];
         std::snprintf(text, sizeof text, "%zu %zu %016llx %016llx", p.points(), p.indices.size(),
-                      static_cast<unsigned long long>(points), static_cast<unsigned long long>(indices));
+                      static_cast<unsigned long long>(points),
+                      static_cast<unsigned long long>(indices));
         ASSERT_EQ(answer, text) << line;
         ++n;
     }
@@ -118,17 +121,25 @@ void expect_symmetric_spans(std::uint32_t lowest, std::uint32_t highest, bool od
     EXPECT_EQ(backward, odd ? 0u : 420u); // the reference's fold just above 6 and 30
 }
 
-TEST(Span, EveryFractionalOddFactorIsSymmetric) { expect_symmetric_spans(65536, 63 * 65536, true); }
-TEST(Span, EveryFractionalEvenFactorIsSymmetric) { expect_symmetric_spans(2 * 65536, 64 * 65536, false); }
+TEST(Span, EveryFractionalOddFactorIsSymmetric)
+{
+    expect_symmetric_spans(65536, 63 * 65536, true);
+}
+TEST(Span, EveryFractionalEvenFactorIsSymmetric)
+{
+    expect_symmetric_spans(2 * 65536, 64 * 65536, false);
+}
 
 rc::Gen<Case> any_case()
 {
     return rc::gen::exec([] {
         Case c;
         c.state.domain = *rc::gen::element(TessellatorDomain::Quad, TessellatorDomain::Tri);
-        c.state.partitioning = *rc::gen::element(Partitioning::Integer, Partitioning::Pow2, Partitioning::FractionalOdd,
-                                                 Partitioning::FractionalEven);
-        c.state.output = *rc::gen::element(OutputPrimitive::TriangleCw, OutputPrimitive::TriangleCcw);
+        c.state.partitioning =
+            *rc::gen::element(Partitioning::Integer, Partitioning::Pow2,
+                              Partitioning::FractionalOdd, Partitioning::FractionalEven);
+        c.state.output =
+            *rc::gen::element(OutputPrimitive::TriangleCw, OutputPrimitive::TriangleCcw);
         for (float& f : c.factors) f = float(*rc::gen::inRange(1, 64 * 64)) / 64.0f;
         return c;
     });
@@ -148,7 +159,8 @@ RC_GTEST_PROP(Tessellator, SignedAreasAddUpToTheDomainExactly, ())
         }
         area += (u[1] - u[0]) * (v[2] - v[0]) - (u[2] - u[0]) * (v[1] - v[0]);
     }
-    std::int64_t const whole = c.state.domain == TessellatorDomain::Quad ? std::int64_t(1) << 33 : std::int64_t(1) << 32;
+    std::int64_t const whole =
+        c.state.domain == TessellatorDomain::Quad ? std::int64_t(1) << 33 : std::int64_t(1) << 32;
     RC_ASSERT(area == (c.state.output == OutputPrimitive::TriangleCw ? whole : -whole));
     RC_ASSERT(std::find(used.begin(), used.end(), 0) == used.end());
 }
@@ -179,13 +191,15 @@ TEST(Tessellator, OneDimensionalGoldenPositions) // rule R64
     auto const at = [](double f) { return std::uint32_t(f * 65536); };
     EXPECT_EQ(span_positions(at(3), true), (V{0, 21845, 43691, 65536}));
     EXPECT_EQ(span_positions(at(2.5), true), (V{0, 16384, 49152, 65536}));
-    EXPECT_EQ(span_positions(at(5.5), true), (V{0, 12171, 14511, 26682, 38854, 51025, 53365, 65536}));
+    EXPECT_EQ(span_positions(at(5.5), true),
+              (V{0, 12171, 14511, 26682, 38854, 51025, 53365, 65536}));
     EXPECT_EQ(span_positions(at(4.5), false), (V{0, 15019, 17750, 32768, 47786, 50517, 65536}));
 }
 
 TEST(Tessellator, CullsByEdgesAndClampsInsides) // rules R56 to R58
 {
-    TessellatorState const s{TessellatorDomain::Quad, Partitioning::Integer, OutputPrimitive::TriangleCw};
+    TessellatorState const s{TessellatorDomain::Quad, Partitioning::Integer,
+                             OutputPrimitive::TriangleCw};
     for (float bad : {0.0f, -0.0f, -1.0f, NAN, -INFINITY}) {
         EXPECT_TRUE(process_tess_factors(s, {bad, 1, 1, 1, 1, 1}).culled);
         EXPECT_FALSE(process_tess_factors(s, {1, 1, 1, 1, bad, bad}).culled);
@@ -205,7 +219,8 @@ TEST(TessellatorCache, ServesThePatternItWouldMake)
             TessellatedPatch const made = run(c);
             EXPECT_EQ(found->patch.u, made.u);
             EXPECT_EQ(found->patch.indices, made.indices);
-            for (std::size_t i = 0; i < made.points(); ++i) ASSERT_EQ(found->u[i] * 65536.0f, float(made.u[i]));
+            for (std::size_t i = 0; i < made.points(); ++i)
+                ASSERT_EQ(found->u[i] * 65536.0f, float(made.u[i]));
         }
     auto const held = cache.find({2, 2, 2, 2, 2, 2});
     EXPECT_EQ(cache.find({2, 2, 2, 2, 2, 2}), held);

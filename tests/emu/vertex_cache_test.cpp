@@ -44,7 +44,8 @@ RC_GTEST_PROP(VertexCache, HitsAndMissesEqualTheDefinition, ())
 {
     auto const kind = *rc::gen::element(Kind::None, Kind::Fifo, Kind::Lru, Kind::Infinite);
     VertexCacheModel const model{kind, *rc::gen::inRange(1u, 9u)};
-    auto const accesses = *rc::gen::container<std::vector<std::uint32_t>>(rc::gen::inRange(0u, 15u));
+    auto const accesses =
+        *rc::gen::container<std::vector<std::uint32_t>>(rc::gen::inRange(0u, 15u));
     VertexCache cache(model, 15);
     Reference reference(model);
     for (std::uint32_t v : accesses) RC_ASSERT(cache.access(v) == reference.access(v));

@@ -68,7 +68,8 @@ TEST_P(LimitSurfaceOn, ExportedPatchCornersAgreeToOneMillionthOfTheDiagonal)
     PreparedMesh const m =
         prepare_mesh(load_model(test::shared("models/" + name + ".obj").string()).mesh, technique);
     auto const patches = technique.build(*m.topology, {});
-    LimitCorners const limit = read_limit(test::shared("golden/limit/" + name + ".csv.gz"), *m.mesh);
+    LimitCorners const limit =
+        read_limit(test::shared("golden/limit/" + name + ".csv.gz"), *m.mesh);
     std::size_t compared = 0;
     double worst = 0;
     visit_surface(*patches, {}, ThreadPool(), [&](DrawPass const& pass, ShadedPatch const& p) {
@@ -91,10 +92,12 @@ TEST_P(LimitSurfaceOn, ExportedPatchCornersAgreeToOneMillionthOfTheDiagonal)
     });
     EXPECT_EQ(compared, limit.at.size());
     EXPECT_LE(worst, 1e-6);
-    std::printf("%s: %zu corners, worst distance %.2g of the diagonal\n", name.c_str(), compared, worst);
+    std::printf("%s: %zu corners, worst distance %.2g of the diagonal\n", name.c_str(), compared,
+                worst);
 }
 INSTANTIATE_TEST_SUITE_P(Models, LimitSurfaceOn,
-                         testing::Values("bigguy", "monsterfrog", "suzanne", "chamfer_cube", "catmark_torus"));
+                         testing::Values("bigguy", "monsterfrog", "suzanne", "chamfer_cube",
+                                         "catmark_torus"));
 
 } // namespace
 } // namespace tessemu

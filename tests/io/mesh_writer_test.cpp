@@ -41,7 +41,8 @@ Exported export_model(std::string const& model, fs::path const& path, bool weld,
     return {writer.vertices(), writer.triangles()};
 }
 
-// A welded export of a closed mesh is a closed manifold: each edge has two triangles, V - E + F = 2.
+// A welded export of a closed mesh is a closed manifold: each edge has two triangles, V - E + F
+// = 2.
 TEST(MeshWriter, AWeldedClosedMeshHasEulerCharacteristicTwo)
 {
     fs::path const path = scratch() / "spindle.obj";
@@ -63,7 +64,8 @@ TEST(MeshWriter, AWeldedClosedMeshHasEulerCharacteristicTwo)
             for (int i = 0; i < 3; ++i) ++edges[std::minmax(v[i], v[(i + 1) % 3])];
         }
         ASSERT_EQ(faces, e.triangles);
-        for (auto const& [edge, n] : edges) ASSERT_EQ(n, 2) << edge.first << "-" << edge.second << " tess " << tess;
+        for (auto const& [edge, n] : edges)
+            ASSERT_EQ(n, 2) << edge.first << "-" << edge.second << " tess " << tess;
         EXPECT_EQ(long(e.vertices) - long(edges.size()) + long(faces), 2);
     }
 }
@@ -91,11 +93,14 @@ TEST(MeshWriter, LeavesNothingBehindUnlessFinished)
 {
     fs::path const path = scratch() / "never.obj";
     fs::remove(path);
-    std::size_t const before = std::size_t(std::distance(fs::directory_iterator(scratch()), fs::directory_iterator()));
+    std::size_t const before =
+        std::size_t(std::distance(fs::directory_iterator(scratch()), fs::directory_iterator()));
     {
         MeshWriter const writer(path, false);
     }
-    EXPECT_EQ(std::size_t(std::distance(fs::directory_iterator(scratch()), fs::directory_iterator())), before);
+    EXPECT_EQ(
+        std::size_t(std::distance(fs::directory_iterator(scratch()), fs::directory_iterator())),
+        before);
     EXPECT_THROW(MeshWriter(scratch() / "a.stl", false), WriteError);
     EXPECT_THROW(MeshWriter(scratch() / "missing" / "a.obj", false), WriteError);
 }

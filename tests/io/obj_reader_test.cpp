@@ -10,8 +10,9 @@
 namespace tessemu {
 namespace {
 
-std::string const kCube = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
-                          "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+std::string const kCube =
+    "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+    "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
 std::string message_of(std::string const& text)
 {
@@ -25,7 +26,8 @@ std::string message_of(std::string const& text)
 
 TEST(ObjReader, ReadsFacesAsTheyAre)
 {
-    ObjFile const f = read_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nf 1 2 3 4\nf 2/1/1 5//2 3/7\n", "a");
+    ObjFile const f =
+        read_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nf 1 2 3 4\nf 2/1/1 5//2 3/7\n", "a");
     ASSERT_EQ(f.mesh.faces(), 2u);
     EXPECT_EQ(f.mesh.face(0).size(), 4u);
     EXPECT_EQ(f.mesh.face(1).size(), 3u);
@@ -35,9 +37,10 @@ TEST(ObjReader, ReadsFacesAsTheyAre)
 
 TEST(ObjReader, ReadsOpenSubdivTags)
 {
-    ObjFile const f = read_obj(kCube + "t crease 2/1/0 0 1 2.5\nt corner 1/1/0 3 10\nt hole 1/0/0 2\n"
-                                       "t interpolateboundary 1/0/0 2\n",
-                               "a");
+    ObjFile const f =
+        read_obj(kCube + "t crease 2/1/0 0 1 2.5\nt corner 1/1/0 3 10\nt hole 1/0/0 2\n"
+                         "t interpolateboundary 1/0/0 2\n",
+                 "a");
     ASSERT_EQ(f.mesh.creases.size(), 1u);
     EXPECT_EQ(f.mesh.creases[0].sharpness, 2.5f);
     ASSERT_EQ(f.mesh.corners.size(), 1u);
@@ -48,7 +51,8 @@ TEST(ObjReader, ReadsOpenSubdivTags)
 TEST(ObjReader, AcceptsByteOrderMarkCarriageReturnsAndContinuations)
 {
     std::string crlf = "\xef\xbb\xbf" + kCube;
-    for (std::size_t i = 0; (i = crlf.find('\n', i)) != std::string::npos; i += 2) crlf.insert(i, "\r");
+    for (std::size_t i = 0; (i = crlf.find('\n', i)) != std::string::npos; i += 2)
+        crlf.insert(i, "\r");
     EXPECT_EQ(read_obj(crlf, "a").mesh.positions.size(), 8u);
     std::string joined = kCube;
     joined.replace(joined.find("f 1 4 3 2"), 9, "f 1 4 \\\n 3 2");
@@ -57,12 +61,17 @@ TEST(ObjReader, AcceptsByteOrderMarkCarriageReturnsAndContinuations)
 
 TEST(ObjReader, ErrorsNameFileLineValueAndLimit)
 {
-    EXPECT_EQ(message_of(kCube + "f 1 2 9\n"), "file.obj:15: vertex index is 9, the file has 8 vertices");
-    EXPECT_EQ(message_of(kCube + "f 0 1 2\n"), "file.obj:15: vertex index is 0, indices start at 1");
+    EXPECT_EQ(message_of(kCube + "f 1 2 9\n"),
+              "file.obj:15: vertex index is 9, the file has 8 vertices");
+    EXPECT_EQ(message_of(kCube + "f 0 1 2\n"),
+              "file.obj:15: vertex index is 0, indices start at 1");
     EXPECT_EQ(message_of("v 1 2\n" + kCube), "file.obj:1: vertex has 2 coordinates, 3 are needed");
-    EXPECT_EQ(message_of("v 1 2 nan\n" + kCube), "file.obj:1: coordinate 'nan' is not a finite number");
-    EXPECT_EQ(message_of("v 1 2 0x1\n" + kCube), "file.obj:1: coordinate '0x1' is not a finite number");
-    EXPECT_EQ(message_of(kCube + "f 1 2\n"), "file.obj:15: face has 2 vertices, at least 3 are needed");
+    EXPECT_EQ(message_of("v 1 2 nan\n" + kCube),
+              "file.obj:1: coordinate 'nan' is not a finite number");
+    EXPECT_EQ(message_of("v 1 2 0x1\n" + kCube),
+              "file.obj:1: coordinate '0x1' is not a finite number");
+    EXPECT_EQ(message_of(kCube + "f 1 2\n"),
+              "file.obj:15: face has 2 vertices, at least 3 are needed");
     EXPECT_EQ(message_of(kCube + "f 1 2 1\n"), "file.obj:15: face names vertex 1 twice");
     EXPECT_EQ(message_of("v 1 2 3\n"), "file.obj: holds no face (1 vertices)");
     EXPECT_NE(message_of("v 1 2 1e30\n" + kCube).find("limit is 1000000000"), std::string::npos);
@@ -70,8 +79,9 @@ TEST(ObjReader, ErrorsNameFileLineValueAndLimit)
 
 TEST(ObjReader, WarnsAboutTagsThatItSkips)
 {
-    for (char const* tag : {"t crease 2/1/0 0 8 2\n", "t crease 2/1/0 0 6 2\n", "t unknown 0/0/0\n", "t crease\n",
-                            "t crease 2/1/0 0\n", "t corner 1/1/0 x 2\n", "t hole 1/0/0 6\n"}) {
+    for (char const* tag :
+         {"t crease 2/1/0 0 8 2\n", "t crease 2/1/0 0 6 2\n", "t unknown 0/0/0\n", "t crease\n",
+          "t crease 2/1/0 0\n", "t corner 1/1/0 x 2\n", "t hole 1/0/0 6\n"}) {
         ObjFile const f = read_obj(kCube + tag, "a.obj");
         EXPECT_EQ(f.warnings.size(), 1u) << tag;
         EXPECT_TRUE(f.mesh.creases.empty());
@@ -81,8 +91,9 @@ TEST(ObjReader, WarnsAboutTagsThatItSkips)
 RC_GTEST_PROP(ObjReader, AnyTextEitherReadsOrThrowsAFormatError, ())
 {
     auto const lines = *rc::gen::container<std::vector<std::string>>(rc::gen::oneOf(
-        rc::gen::element<std::string>("v 0 0 0", "v 1 0 0", "v 0 1 1e5", "f 1 2 3", "f -1 -2 -3", "f 1/2/3 2 3",
-                                      "t crease 2/1/0 0 1 2", "t", "f", "v", "f 1 2 3 \\", "\\"),
+        rc::gen::element<std::string>("v 0 0 0", "v 1 0 0", "v 0 1 1e5", "f 1 2 3", "f -1 -2 -3",
+                                      "f 1/2/3 2 3", "t crease 2/1/0 0 1 2", "t", "f", "v",
+                                      "f 1 2 3 \\", "\\"),
         rc::gen::string<std::string>()));
     std::string text;
     for (auto const& l : lines) text += l + "\n";
@@ -97,7 +108,8 @@ RC_GTEST_PROP(ObjReader, AnyTextEitherReadsOrThrowsAFormatError, ())
 TEST(ObjReader, NumbersRoundAsTheNearestFloat)
 {
     // tinyobjloader parses in double before it rounds; these would differ if it parsed in float.
-    ObjFile const f = read_obj("v 0.1 1.17549435e-38 16777217\nv 0.3 -2.5 1e-3\nv 3.4028 7 8\nf 1 2 3\n", "a");
+    ObjFile const f =
+        read_obj("v 0.1 1.17549435e-38 16777217\nv 0.3 -2.5 1e-3\nv 3.4028 7 8\nf 1 2 3\n", "a");
     EXPECT_EQ(f.mesh.positions[0].x, 0.1f);
     EXPECT_EQ(f.mesh.positions[0].z, 16777216.0f);
     EXPECT_EQ(f.mesh.positions[1].x, 0.3f);

@@ -22,7 +22,8 @@ TEST(Connectivity, InputsAreTheTwoRing)
         Neighbourhood n;
         for (std::uint32_t f = 0; f < m.faces(); ++f) {
             find_neighbourhood(t, f, n);
-            EXPECT_EQ(std::set<std::uint32_t>(n.inputs.begin(), n.inputs.end()).size(), n.inputs.size());
+            EXPECT_EQ(std::set<std::uint32_t>(n.inputs.begin(), n.inputs.end()).size(),
+                      n.inputs.size());
             auto sorted = n.inputs;
             std::sort(sorted.begin(), sorted.end());
             EXPECT_EQ(sorted, t.two_ring(f)) << name << " face " << f;
@@ -76,7 +77,8 @@ TEST(GregoryStencils, SharedControlPointsHaveEqualWeightsInEveryPatch)
             for (int i = 0; i < N; ++i) {
                 check(vertex_points, vertex(i), s.rows[std::size_t(i)]);
                 check(edge_points, std::pair(vertex(i), vertex(i + 1)), s.rows[std::size_t(N + i)]);
-                check(edge_points, std::pair(vertex(i), vertex(i - 1)), s.rows[std::size_t(2 * N + i)]);
+                check(edge_points, std::pair(vertex(i), vertex(i - 1)),
+                      s.rows[std::size_t(2 * N + i)]);
             }
         }
         EXPECT_GT(shared, m.faces());
@@ -92,7 +94,8 @@ TEST(GregoryStencil, RefusesAPatchPastThirtyTwoInputsAndNamesIt)
         (void)find_technique("gregory-stencil").build(t, {});
         FAIL();
     } catch (LimitError const& e) {
-        EXPECT_NE(std::string(e.what()).find("valences 40, 3, 2, 3"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("valences 40, 3, 2, 3"), std::string::npos)
+            << e.what();
         EXPECT_GT(e.value, 32u);
         EXPECT_EQ(e.limit, 32u);
     }

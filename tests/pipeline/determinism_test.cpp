@@ -16,7 +16,8 @@ struct Bytes {
     DrawStatistics statistics;
 };
 
-Bytes draw_bytes(PatchMesh const& patches, ControlMesh const& mesh, int threads, int lanes, Contraction contraction)
+Bytes draw_bytes(PatchMesh const& patches, ControlMesh const& mesh, int threads, int lanes,
+                 Contraction contraction)
 {
     FrameSettings s;
     s.width = 150;
@@ -44,8 +45,10 @@ TEST(Determinism, PictureAndCountersDoNotDependOnThreadsOrLanes)
             for (int threads : {1, 2, 3, 8})
                 for (int lanes : {4, 8, 16}) {
                     Bytes const other = draw_bytes(*patches, *m.mesh, threads, lanes, contraction);
-                    ASSERT_TRUE(first.pixels == other.pixels) << name << " -j " << threads << " lanes " << lanes;
-                    ASSERT_EQ(first.statistics, other.statistics) << name << " -j " << threads << " lanes " << lanes;
+                    ASSERT_TRUE(first.pixels == other.pixels)
+                        << name << " -j " << threads << " lanes " << lanes;
+                    ASSERT_EQ(first.statistics, other.statistics)
+                        << name << " -j " << threads << " lanes " << lanes;
                 }
         }
 }

@@ -88,7 +88,8 @@ TEST(Topology, SectorsAreCutAtCreasesAndBoundary)
 std::string refusal(std::string const& faces)
 {
     std::string text;
-    for (int i = 0; i < 9; ++i) text += "v " + std::to_string(i % 3) + " " + std::to_string(i / 3) + " 0\n";
+    for (int i = 0; i < 9; ++i)
+        text += "v " + std::to_string(i % 3) + " " + std::to_string(i / 3) + " 0\n";
     try {
         Topology const t(read_obj(text + faces, "a").mesh);
     } catch (MeshError const& e) {
@@ -99,17 +100,21 @@ std::string refusal(std::string const& faces)
 
 TEST(Topology, SaysWhatIsWrongAndWhere)
 {
-    EXPECT_NE(refusal("f 1 2 5 4\nf 2 3 6 5\nf 2 8 9 5\n").find("edge 5-2 is used in the same direction by faces 2 and 3"),
+    EXPECT_NE(refusal("f 1 2 5 4\nf 2 3 6 5\nf 2 8 9 5\n")
+                  .find("edge 5-2 is used in the same direction by faces 2 and 3"),
               std::string::npos);
     EXPECT_NE(refusal("f 1 2 5 4\nf 2 5 6 3\n").find("edge 2-5"), std::string::npos);
-    EXPECT_NE(refusal("f 1 2 5\nf 5 6 9\n").find("vertex 5 form more than one fan"), std::string::npos);
+    EXPECT_NE(refusal("f 1 2 5\nf 5 6 9\n").find("vertex 5 form more than one fan"),
+              std::string::npos);
     EXPECT_EQ(refusal("f 1 2 5 4\nf 2 3 6 5\n"), "");
 }
 
-// Sheet math_subdivision 1.1: quads only after a step; the counts F' = sum of sides, V' = F + E + V.
+// Sheet math_subdivision 1.1: quads only after a step; the counts F' = sum of sides, V' = F + E +
+// V.
 TEST(CatmullClark, SplitsEveryFaceAndKeepsTheLimit)
 {
-    ControlMesh const m = read_obj("v 0 0 0\nv 2 0 0\nv 3 2 0\nv 1 3 0\nv -1 2 0\nf 1 2 3 4 5\n", "pentagon").mesh;
+    ControlMesh const m =
+        read_obj("v 0 0 0\nv 2 0 0\nv 3 2 0\nv 1 3 0\nv -1 2 0\nf 1 2 3 4 5\n", "pentagon").mesh;
     Topology const t(m);
     ControlMesh const s = catmull_clark_step(t);
     EXPECT_EQ(s.faces(), 5u);

@@ -43,7 +43,8 @@ std::vector<Machine> contraction_policies()
 {
     std::vector<Machine> out(2);
     out[1].contraction = Contraction::All;
-    for (std::uint64_t seed = 1; seed <= 10; ++seed) out.push_back({kNativeLanes, Contraction::Mixed, seed});
+    for (std::uint64_t seed = 1; seed <= 10; ++seed)
+        out.push_back({kNativeLanes, Contraction::Mixed, seed});
     return out;
 }
 
@@ -52,18 +53,20 @@ void expect_closed(std::string const& model)
     Loaded const m = load_patches(model);
     ThreadPool const threads;
     for (Machine const& machine : contraction_policies())
-        for (float factor : kSlow ? std::vector{1.0f, 4.0f, 7.3f} : std::vector{1.0f, 4.0f, 7.3f, 16.0f, 64.0f}) {
+        for (float factor :
+             kSlow ? std::vector{1.0f, 4.0f, 7.3f} : std::vector{1.0f, 4.0f, 7.3f, 16.0f, 64.0f}) {
             FrameSettings s;
             s.tess_factor = factor;
             s.machine = machine;
-            test::EdgeComparison const c = test::compare_edges(*m.mesh.mesh, *m.patches, s, threads);
+            test::EdgeComparison const c =
+                test::compare_edges(*m.mesh.mesh, *m.patches, s, threads);
             ASSERT_GT(c.shared_points, 0u);
-            ASSERT_EQ(c.differing_positions, 0u) << model << " factor " << factor << " policy "
-                                                 << int(machine.contraction) << " seed " << machine.seed << ": "
-                                                 << c.first_difference;
-            ASSERT_EQ(c.differing_normals, 0u) << model << " factor " << factor << " policy "
-                                               << int(machine.contraction) << " seed " << machine.seed << ": "
-                                               << c.first_difference;
+            ASSERT_EQ(c.differing_positions, 0u)
+                << model << " factor " << factor << " policy " << int(machine.contraction)
+                << " seed " << machine.seed << ": " << c.first_difference;
+            ASSERT_EQ(c.differing_normals, 0u)
+                << model << " factor " << factor << " policy " << int(machine.contraction)
+                << " seed " << machine.seed << ": " << c.first_difference;
         }
 }
 
@@ -80,7 +83,8 @@ TEST_P(GregoryStencilOn, SharedEdgesHaveEqualBitsUnderEveryContraction)
     TESSEMU_NEEDS_SHARED(file);
     expect_closed(test::shared(file).string());
 }
-INSTANTIATE_TEST_SUITE_P(Models, GregoryStencilOn, testing::Values("bigguy", "monsterfrog", "suzanne"));
+INSTANTIATE_TEST_SUITE_P(Models, GregoryStencilOn,
+                         testing::Values("bigguy", "monsterfrog", "suzanne"));
 
 enum class EdgeRule { LeftToRight, MirrorPairs };
 
@@ -93,7 +97,8 @@ template <EdgeRule kRule, class Inside> struct NaiveEdges {
     template <class T> using Output = ShadedVertex<T>;
 
     template <class T>
-    ShadedVertex<T> operator()(DomainInput<T> const& in, ControlPoints<ControlVertex<T>> const& patch,
+    ShadedVertex<T> operator()(DomainInput<T> const& in,
+                               ControlPoints<ControlVertex<T>> const& patch,
                                ControlPoints<EdgeRegister<T>> const&) const
     {
         constexpr int N = kDomain == TessellatorDomain::Quad ? 4 : 3;
@@ -109,7 +114,8 @@ template <EdgeRule kRule, class Inside> struct NaiveEdges {
         float3<T> p = Inside::template evaluate<T>(patch, in, false).position;
         for (int k = 0; k < N; ++k) {
             float3<T> const p0 = patch[k].position, p1 = patch[N + k].position;
-            float3<T> const p2 = patch[2 * N + (k + 1) % N].position, p3 = patch[(k + 1) % N].position;
+            float3<T> const p2 = patch[2 * N + (k + 1) % N].position,
+                            p3 = patch[(k + 1) % N].position;
             T const s = T(1) - t[k], ss = s * s, tt = t[k] * t[k];
             T const m = T(3) * T(s * t[k]);
             T const b0 = ss * s, b1 = m * s, b2 = m * t[k], b3 = tt * t[k];
@@ -135,13 +141,15 @@ template <EdgeRule kRule> double differing_share(Contraction contraction, float 
             return make_domain_program(NaiveEdges<kRule, RegularQuadInside>{}, s.machine);
         return make_domain_program(NaiveEdges<kRule, GregoryQuadInside>{}, s.machine);
     };
-    test::EdgeComparison const c = test::compare_edges(*m.mesh.mesh, *m.patches, s, ThreadPool(), replace);
+    test::EdgeComparison const c =
+        test::compare_edges(*m.mesh.mesh, *m.patches, s, ThreadPool(), replace);
     double const share = double(c.differing_edge_coordinates) / double(c.shared_edge_coordinates);
     std::printf("factor %g: %.1f %% of edge coordinates differ\n", double(factor), 100 * share);
     return share;
 }
 
-// Bounds: the measured shares of lanes_experiment (38.9 to 47.9 %, 16.8 to 28.8 %) with room for other meshes.
+// Bounds: the measured shares of lanes_experiment (38.9 to 47.9 %, 16.8 to 28.8 %) with room for
+// other meshes.
 TEST(NaiveEdgeRule, LeftToRightSumsCrackThirtyToFiftyPercent)
 {
     TESSEMU_NEEDS_SHARED("models/bigguy.obj");
@@ -182,12 +190,14 @@ TEST(Contraction, ChangesTheInteriorOfNearlyEveryPatch)
             auto const& t = p.points->patch;
             for (std::size_t k = 0; k < t.points(); ++k)
                 if (t.u[k] && t.v[k] && t.u[k] != kFixedOne && t.v[k] != kFixedOne)
-                    for (std::size_t c = 0; c < 3; ++c) inside.push_back(p.outputs[c * p.stride + k]);
+                    for (std::size_t c = 0; c < 3; ++c)
+                        inside.push_back(p.outputs[c * p.stride + k]);
             interiors[i].push_back(std::move(inside));
         });
     }
     std::size_t changed = 0;
-    for (std::size_t p = 0; p < interiors[0].size(); ++p) changed += interiors[0][p] != interiors[1][p];
+    for (std::size_t p = 0; p < interiors[0].size(); ++p)
+        changed += interiors[0][p] != interiors[1][p];
     EXPECT_GE(changed, interiors[0].size() * 95 / 100);
 }
 

@@ -1,13 +1,14 @@
-// Costs of the shaders: compile-time tallies against the papers' numbers and against run-time counts.
+// Costs of the shaders: compile-time tallies against the papers' numbers and against run-time
+// counts.
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/tally.h"
+#include "io/obj_reader.h"
+#include "pipeline/builtin_models.h"
 #include "pipeline/frame.h"
 #include "pipeline/gregory_stencils.h"
 #include "shaders_cpp/gregory/domain_shaders.h"
 #include "shaders_cpp/gregory/stencil_hull_shader.h"
-#include "io/obj_reader.h"
-#include "pipeline/builtin_models.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,8 @@ template <class Inside> constexpr Cost evaluation_cost()
 {
     Cost c;
     c.flops = tally([&](FlopCount* sink) {
-        ControlPoints<ControlVertex<Tally>> const patch(sink, Inside::kControlPoints, &c.control_points);
+        ControlPoints<ControlVertex<Tally>> const patch(sink, Inside::kControlPoints,
+                                                        &c.control_points);
         DomainInput<Tally> const in{Tally(0.25, sink), Tally(0.5, sink), Tally(0.25, sink), 0};
         TangentFrame<Tally> const s = Inside::template evaluate<Tally>(patch, in, false);
         (void)cross(s.du, s.dv);
@@ -35,8 +37,8 @@ template <class Inside> constexpr Cost evaluation_cost()
     return c;
 }
 
-// LOOP10: 162 for the bicubic; sheet section 8: 198 for Gregory with all scalar work (LOOP10's 174 leaves
-// out the 24 multiplications that apply the blend weights); 258 for the triangle.
+// LOOP10: 162 for the bicubic; sheet section 8: 198 for Gregory with all scalar work (LOOP10's 174
+// leaves out the 24 multiplications that apply the blend weights); 258 for the triangle.
 static_assert(flops_loop10(evaluation_cost<RegularQuadInside>().flops) == 162);
 static_assert(flops_loop10(evaluation_cost<GregoryQuadInside>().flops) == 198);
 static_assert(flops_loop10(evaluation_cost<GregoryTriangleInside>().flops) == 258);
@@ -52,7 +54,8 @@ template <class Shader> constexpr Cost domain_cost(double u, double v)
     constexpr int N = Shader::kDomain == TessellatorDomain::Quad ? 4 : 3;
     Cost c;
     c.flops = tally([&](FlopCount* sink) {
-        ControlPoints<ControlVertex<Tally>> const patch(sink, Shader::kControlPoints, &c.control_points);
+        ControlPoints<ControlVertex<Tally>> const patch(sink, Shader::kControlPoints,
+                                                        &c.control_points);
         ControlPoints<EdgeRegister<Tally>> const registers(sink, 6 * N, &c.patch_constants);
         DomainInput<Tally> const in{Tally(u, sink), Tally(v, sink), Tally(1 - u - v, sink), 0};
         (void)ProjectedSurface<Shader>{}(in, patch, registers);
@@ -67,7 +70,8 @@ TEST(EvaluationCost, ReadsTwentyFifteenAndSixteenControlPoints)
     EXPECT_EQ(evaluation_cost<RegularQuadInside>().control_points, 16u);
 }
 
-// A stencil row costs 3 per input; with one extraordinary vertex there are 2n + 8 inputs: 6n + 24 (LOOP10).
+// A stencil row costs 3 per input; with one extraordinary vertex there are 2n + 8 inputs: 6n + 24
+// (LOOP10).
 TEST(StencilRow, CostsThreeMultiplicationsPerInput)
 {
     for (int n = 3; n <= 12; ++n) {
@@ -82,7 +86,8 @@ TEST(StencilRow, CostsThreeMultiplicationsPerInput)
         hs.patches = {words, 2, "p"};
         hs.order = {order, 3, "o"};
         FlopCount const c = tally([&](FlopCount* sink) {
-            // A weight from memory is no constant: it meets the control point, which carries the sink.
+            // A weight from memory is no constant: it meets the control point, which carries the
+            // sink.
             ControlPoints<ControlVertex<Tally>> const in(sink, inputs);
             (void)hs.stencil_row<Tally>({0}, in, 0);
         });
@@ -133,19 +138,23 @@ TEST(DomainShader, RunTimeCountsEqualTheTallySummedOverInvocations)
                 auto const visit = [&](ShadedPatch const& p) {
                     for (std::size_t i = 0; i < p.points->patch.points(); ++i) {
                         double const u = double(p.points->u[i]), v = double(p.points->v[i]);
-                        Cost const c = pass.kind.name == "regular quad"   ? domain_cost<RegularQuadDomainShader>(u, v)
-                                       : pass.kind.name == "Gregory quad" ? domain_cost<GregoryQuadDomainShader>(u, v)
-                                                                          : domain_cost<GregoryTriangleDomainShader>(u, v);
+                        Cost const c = pass.kind.name == "regular quad"
+                                           ? domain_cost<RegularQuadDomainShader>(u, v)
+                                       : pass.kind.name == "Gregory quad"
+                                           ? domain_cost<GregoryQuadDomainShader>(u, v)
+                                           : domain_cost<GregoryTriangleDomainShader>(u, v);
                         expected.flops += c.flops;
                         expected.control_points += c.control_points;
                         expected.patch_constants += c.patch_constants;
                     }
                 };
-                DrawStatistics const s = draw(pass.pipeline, pass.call, nullptr, visit, ThreadPool(2));
+                DrawStatistics const s =
+                    draw(pass.pipeline, pass.call, nullptr, visit, ThreadPool(2));
                 StageStatistics const& ds = stage(s, "domain_shader");
                 EXPECT_EQ(ds.flops, expected.flops) << pass.kind.name << " lanes " << lanes;
                 EXPECT_EQ(fetched(ds, "control_points"), expected.control_points) << pass.kind.name;
-                EXPECT_EQ(fetched(ds, "patch_constants"), expected.patch_constants) << pass.kind.name;
+                EXPECT_EQ(fetched(ds, "patch_constants"), expected.patch_constants)
+                    << pass.kind.name;
                 kinds.insert(pass.kind.name);
             }
         }
@@ -167,14 +176,16 @@ TEST(HullShader, RunTimeCountsEqualThreePerNonZeroWeight)
             std::vector<std::size_t> rows(std::size_t(s.control_points + 4 * n.sides));
             std::iota(rows.begin(), rows.end(), std::size_t(0));
             for (int i = 0; i < n.sides; ++i)
-                for (int k = 0; k < 2; ++k) rows.push_back(std::size_t(s.corner_row[i] + 2 * n.ring_shift[i] + k));
+                for (int k = 0; k < 2; ++k)
+                    rows.push_back(std::size_t(s.corner_row[i] + 2 * n.ring_shift[i] + k));
             for (std::size_t r : rows)
                 for (double w : s.rows[r]) expected += 3 * (float(w) != 0);
         }
         for (int lanes : {4, 8, 16}) {
             FrameSettings settings;
             settings.machine.lanes = lanes;
-            DrawStatistics const s = visit_surface(*built.patches, settings, ThreadPool(2), [](auto const&, auto const&) {});
+            DrawStatistics const s = visit_surface(*built.patches, settings, ThreadPool(2),
+                                                   [](auto const&, auto const&) {});
             EXPECT_EQ(stage(s, "hull_shader").flops.mul, expected) << name << " lanes " << lanes;
             EXPECT_EQ(stage(s, "hull_shader").flops.add, expected) << name;
         }

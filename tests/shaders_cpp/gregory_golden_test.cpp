@@ -26,20 +26,18 @@ ControlMesh mesh_from(Json const& j)
     return m;
 }
 
-// A face's patch in scalar type F: the hull shader's stencil rows on the mesh's vertices, turned back so
-// that corner 0 is the face's first vertex.
+// A face's patch in scalar type F: the hull shader's stencil rows on the mesh's vertices, turned
+// back so that corner 0 is the face's first vertex.
 template <class F> struct Patch {
     std::vector<F> points; // control points, three numbers each
     double scale = 0;      // largest sum over the inputs of |weight| |coordinate|, for error bounds
     double largest_point = 0;
 
-    ControlPoints<ControlVertex<F>> view() const
-    {
-        return {points.data(), int(points.size() / 3)};
-    }
+    ControlPoints<ControlVertex<F>> view() const { return {points.data(), int(points.size() / 3)}; }
 };
 
-template <class F, TessellatorDomain kDomain> Patch<F> patch_of(Topology const& topology, std::uint32_t face)
+template <class F, TessellatorDomain kDomain>
+Patch<F> patch_of(Topology const& topology, std::uint32_t face)
 {
     Neighbourhood n;
     find_neighbourhood(topology, face, n);
@@ -58,14 +56,16 @@ template <class F, TessellatorDomain kDomain> Patch<F> patch_of(Topology const& 
         double sum[3] = {};
         for (std::size_t i = 0; i < row.size(); ++i) {
             if (F(row[i]) != 0) mask |= 1u << i;
-            for (std::size_t k = 0; k < 3; ++k) sum[k] += std::abs(row[i] * double(input[3 * i + k]));
+            for (std::size_t k = 0; k < 3; ++k)
+                sum[k] += std::abs(row[i] * double(input[3 * i + k]));
         }
         masks.push_back(mask);
         for (double x : sum) out.scale = std::max(out.scale, x);
     }
     words = {0, 0, std::uint32_t(s.rows.size()), 0, 0, 0, 0, 0};
     std::iota(order.begin(), order.end(), std::uint8_t(0));
-    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return n.inputs[a] < n.inputs[b]; });
+    std::sort(order.begin(), order.end(),
+              [&](auto a, auto b) { return n.inputs[a] < n.inputs[b]; });
     StencilHullShader<kDomain, F> hs;
     hs.points = s.control_points;
     hs.weights = {weights, 0, "weights"};
@@ -79,7 +79,8 @@ template <class F, TessellatorDomain kDomain> Patch<F> patch_of(Topology const& 
         int const kind = id / N, corner = (id % N + n.rotation) % N;
         F* const at = out.points.data() + 3 * (kind * N + corner);
         at[0] = p.position.x, at[1] = p.position.y, at[2] = p.position.z;
-        for (int k = 0; k < 3; ++k) out.largest_point = std::max(out.largest_point, std::abs(double(at[k])));
+        for (int k = 0; k < 3; ++k)
+            out.largest_point = std::max(out.largest_point, std::abs(double(at[k])));
     }
     return out;
 }
@@ -92,15 +93,16 @@ double error(float3<float> const& p, Json const& expected, double scale = 1)
 }
 double error(float3<double> const& p, Json const& expected, double scale = 1)
 {
-    return std::max({std::abs(p.x * scale - double(expected[0])), std::abs(p.y * scale - double(expected[1])),
+    return std::max({std::abs(p.x * scale - double(expected[0])),
+                     std::abs(p.y * scale - double(expected[1])),
                      std::abs(p.z * scale - double(expected[2]))});
 }
 
-// Error bounds. double: 1e-12, as the golden data were compared. float, with u = 2^-24: a stencil sum of
-// n <= 32 terms rounds each weight, product and partial sum, so it errs by at most (n + 2) u sum|w||x|.
-// Evaluation is a convex combination of control points through at most 24 roundings on any path (blend
-// weights 4, blend 2, basis 4, row 4, column 4, and 6 spare); a derivative multiplies that by the sum of
-// the absolute derivative weights, 6 for a cubic, 8 for a quartic.
+// Error bounds. double: 1e-12, as the golden data were compared. float, with u = 2^-24: a stencil
+// sum of n <= 32 terms rounds each weight, product and partial sum, so it errs by at most (n + 2) u
+// sum|w||x|. Evaluation is a convex combination of control points through at most 24 roundings on
+// any path (blend weights 4, blend 2, basis 4, row 4, column 4, and 6 spare); a derivative
+// multiplies that by the sum of the absolute derivative weights, 6 for a cubic, 8 for a quartic.
 template <class F> double point_bound(Patch<F> const& p)
 {
     return sizeof(F) == 8 ? 1e-12 : 34 * std::ldexp(1, -24) * p.scale;
@@ -110,18 +112,21 @@ template <class F> double evaluation_bound(Patch<F> const& p)
     return sizeof(F) == 8 ? 1e-12 : point_bound(p) + 24 * std::ldexp(1, -24) * p.largest_point;
 }
 
-template <class F> class GregoryOn : public testing::Test {};
+template <class F> class GregoryOn : public testing::Test {
+};
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(GregoryOn, Scalars);
 
 std::vector<std::string> golden_meshes()
 {
-    return {"torus_regular", "cube",      "l_shape",   "trapezohedron6", "trapezohedron9", "tetrahedron", "icosahedron",
-            "bipyramid8",    "antiprism7", "prism3",   "house",          "open_grid",      "open_mixed",  "open_fan5"};
+    return {"torus_regular", "cube",        "l_shape",    "trapezohedron6", "trapezohedron9",
+            "tetrahedron",   "icosahedron", "bipyramid8", "antiprism7",     "prism3",
+            "house",         "open_grid",   "open_mixed", "open_fan5"};
 }
 
 template <class F, TessellatorDomain kDomain>
-void check_face(Topology const& topology, Json const& expected, std::string const& mesh, bool true_normals)
+void check_face(Topology const& topology, Json const& expected, std::string const& mesh,
+                bool true_normals)
 {
     constexpr int N = kDomain == TessellatorDomain::Quad ? 4 : 3;
     std::uint32_t const face = expected["face"];
@@ -145,21 +150,27 @@ void check_face(Topology const& topology, Json const& expected, std::string cons
             s = gregory_triangle<F>(patch.view(), F(at[0]), F(at[1]), F(at[2]), true_normals);
             derivative_scale = 4, weights = 8;
         }
-        ASSERT_LE(error(s.position, e["position"]), bound) << mesh << " face " << face << " at " << at;
+        ASSERT_LE(error(s.position, e["position"]), bound)
+            << mesh << " face " << face << " at " << at;
         if (!true_normals) {
-            ASSERT_LE(error(s.du, e["du"], derivative_scale), weights * bound) << mesh << " face " << face << " " << at;
-            ASSERT_LE(error(s.dv, e["dv"], derivative_scale), weights * bound) << mesh << " face " << face << " " << at;
+            ASSERT_LE(error(s.du, e["du"], derivative_scale), weights * bound)
+                << mesh << " face " << face << " " << at;
+            ASSERT_LE(error(s.dv, e["dv"], derivative_scale), weights * bound)
+                << mesh << " face " << face << " " << at;
         } else if (e.contains("true_normal")) {
             float3<F> const n = normalize(cross(s.du, s.dv));
-            // To first order a unit normal errs by |d(du x dv)| / |du x dv|. The dF terms add at most four
-            // times 9 uv/(u+v)^2 v 2 <= 4.5 to the derivative weights. sqrt(3): components to length; 4 ulp
-            // for cross and normalize.
+            // To first order a unit normal errs by |d(du x dv)| / |du x dv|. The dF terms add at
+            // most four times 9 uv/(u+v)^2 v 2 <= 4.5 to the derivative weights. sqrt(3):
+            // components to length; 4 ulp for cross and normalize.
             double const delta = std::sqrt(3.0) * (weights + 18) * bound / derivative_scale;
-            double const length_u = std::sqrt(double(dot(s.du, s.du))), length_v = std::sqrt(double(dot(s.dv, s.dv)));
+            double const length_u = std::sqrt(double(dot(s.du, s.du))),
+                         length_v = std::sqrt(double(dot(s.dv, s.dv)));
             float3<F> const c = cross(s.du, s.dv);
             double const normal_bound =
-                delta * (length_u + length_v) / std::sqrt(double(dot(c, c))) + 4 * std::ldexp(1, -24);
-            ASSERT_LE(error(n, e["true_normal"]), normal_bound) << mesh << " face " << face << " " << at;
+                delta * (length_u + length_v) / std::sqrt(double(dot(c, c))) +
+                4 * std::ldexp(1, -24);
+            ASSERT_LE(error(n, e["true_normal"]), normal_bound)
+                << mesh << " face " << face << " " << at;
         }
     }
 }
@@ -183,13 +194,20 @@ template <class F> void check_all(bool true_normals)
     EXPECT_GT(faces, 150u);
 }
 
-TYPED_TEST(GregoryOn, ControlPointsPointsAndDerivativesAgreeWithGoldenData) { check_all<TypeParam>(false); }
-TYPED_TEST(GregoryOn, TrueNormalsAgreeWithGoldenData) { check_all<TypeParam>(true); }
+TYPED_TEST(GregoryOn, ControlPointsPointsAndDerivativesAgreeWithGoldenData)
+{
+    check_all<TypeParam>(false);
+}
+TYPED_TEST(GregoryOn, TrueNormalsAgreeWithGoldenData)
+{
+    check_all<TypeParam>(true);
+}
 
 TEST(GregoryStencils, AgreeWithGoldenStencilsAndSumToOne)
 {
     for (char const* name : {"house", "l_shape", "open_mixed"}) {
-        Json const j = Json::parse(test::read_text(test::golden(std::string("loop09/") + name + ".json")));
+        Json const j =
+            Json::parse(test::read_text(test::golden(std::string("loop09/") + name + ".json")));
         ControlMesh const mesh = mesh_from(j);
         Topology const topology(mesh);
         for (auto const& g : j["gregory_stencils"]) {
@@ -201,12 +219,15 @@ TEST(GregoryStencils, AgreeWithGoldenStencilsAndSumToOne)
             EXPECT_EQ(inputs, topology.two_ring(face));
             for (int i = 0; i < n.sides; ++i)
                 for (int kind = 0; kind < 5; ++kind) {
-                    auto const& expected = g["weights"][std::size_t((i + n.rotation) % n.sides * 5 + kind)];
+                    auto const& expected =
+                        g["weights"][std::size_t((i + n.rotation) % n.sides * 5 + kind)];
                     auto const& row = s.rows[std::size_t(kind * n.sides + i)];
                     double sum = 0;
                     for (std::size_t k = 0; k < inputs.size(); ++k) {
-                        auto const at = std::find(n.inputs.begin(), n.inputs.end(), inputs[k]) - n.inputs.begin();
-                        EXPECT_NEAR(row[std::size_t(at)], double(expected[k]), 1e-12) << name << " face " << face;
+                        auto const at = std::find(n.inputs.begin(), n.inputs.end(), inputs[k]) -
+                                        n.inputs.begin();
+                        EXPECT_NEAR(row[std::size_t(at)], double(expected[k]), 1e-12)
+                            << name << " face " << face;
                         sum += row[std::size_t(at)];
                     }
                     EXPECT_NEAR(sum, 1, 1e-14);

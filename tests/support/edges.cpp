@@ -10,13 +10,15 @@ namespace tessemu::test {
 
 namespace {
 struct Place {
-    std::uint32_t a, b, t; // edge a < b with the parameter from a in 1/65536, or corner a with b = a
+    std::uint32_t a, b,
+        t; // edge a < b with the parameter from a in 1/65536, or corner a with b = a
     friend bool operator==(Place const&, Place const&) = default;
 };
 struct PlaceHash {
     std::size_t operator()(Place const& p) const
     {
-        return ((std::size_t(p.a) * 0x9e3779b97f4a7c15u) ^ (std::size_t(p.b) << 20) ^ p.t) * 0xbf58476d1ce4e5b9u;
+        return ((std::size_t(p.a) * 0x9e3779b97f4a7c15u) ^ (std::size_t(p.b) << 20) ^ p.t) *
+               0xbf58476d1ce4e5b9u;
     }
 };
 struct Seen {
@@ -25,8 +27,9 @@ struct Seen {
 };
 } // namespace
 
-EdgeComparison compare_edges(ControlMesh const& mesh, PatchMesh const& patches, FrameSettings const& s,
-                             ThreadPool const& threads, ReplaceDomainShader const& replace)
+EdgeComparison compare_edges(ControlMesh const& mesh, PatchMesh const& patches,
+                             FrameSettings const& s, ThreadPool const& threads,
+                             ReplaceDomainShader const& replace)
 {
     EdgeComparison out;
     std::unordered_map<Place, Seen, PlaceHash> seen;
