@@ -1,6 +1,7 @@
 // tessemu: the program. Parses, calls the library, prints.
 //
 // SPDX-License-Identifier: Apache-2.0
+#include "cli/options.h"
 #include "io/atomic_file.h"
 #include "io/image_writer.h"
 #include "io/mesh_writer.h"
@@ -13,7 +14,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 
 #include <unistd.h>
@@ -21,21 +21,6 @@
 using namespace tessemu;
 
 namespace {
-
-// Options as the user wrote them.
-struct Options {
-    std::string model, output, json;
-    std::string scheme = "gregory-stencil", partitioning = "fractional_odd", size = "1024x1024";
-    std::string camera = "auto", view = "lit", normals = "frozen", contraction = "none",
-                cull = "none";
-    std::string vertex_cache = "fifo:16";
-    std::string domain = "quad", primitive = "triangle_cw", batch;
-    std::vector<double> factors;
-    std::vector<std::string> set;
-    double tess = 8;
-    int lanes = kNativeLanes, threads = 0;
-    bool weld = false;
-};
 
 class Stopwatch {
 public:
@@ -72,123 +57,6 @@ private:
     Stopwatch clock_;
     bool shown_ = false;
 };
-
-double number(std::string const& text, std::string const& option)
-{
-    std::size_t end = 0;
-    double x = NAN;
-    try {
-        x = std::stod(text, &end);
-    } catch (std::exception const&) {
-        end = 0;
-    }
-    if (end == 0 || end != text.size() || !std::isfinite(x))
-        throw Error(option + ": '" + text + "' is not a number");
-    return x;
-}
-
-std::vector<std::string> split(std::string const& text, char separator)
-{
-    std::vector<std::string> parts(1);
-    for (char c : text) {
-        if (c == separator)
-            parts.emplace_back();
-        else
-            parts.back() += c;
-    }
-    return parts;
-}
-
-std::pair<int, int> parse_size(std::string const& text)
-{
-    auto const parts = split(text, 'x');
-    if (parts.size() != 2) throw Error("--size is '" + text + "', it must be WIDTHxHEIGHT");
-    int out[2];
-    for (std::size_t i = 0; i < 2; ++i) {
-        double const x = number(parts[i], "--size");
-        if (x != std::floor(x) || x < 1 || x > RenderTarget::kMaxSize)
-            throw Error(fmt::format("--size: {} is not a whole number from 1 to {}", parts[i],
-                                    RenderTarget::kMaxSize));
-        out[i] = int(x);
-    }
-    return {out[0], out[1]};
-}
-
-glm::vec3 parse_vector(std::string const& text)
-{
-    auto const parts = split(text, ',');
-    if (parts.size() != 3) throw Error("--camera: '" + text + "' is not X,Y,Z");
-    return {float(number(parts[0], "--camera")), float(number(parts[1], "--camera")),
-            float(number(parts[2], "--camera"))};
-}
-
-// auto, from=X,Y,Z, or eye=X,Y,Z with target=, up=, focal=, joined by colons.
-Camera parse_camera(std::string const& text, ControlMesh const& mesh, float width_over_height)
-{
-    glm::vec3 from(0.5f, 0.5f, 1.0f);
-    std::optional<glm::vec3> eye, target, up;
-    std::optional<float> focal;
-    if (text != "auto") {
-        for (std::string const& part : split(text, ':')) {
-            std::size_t const equals = part.find('=');
-            std::string const key = part.substr(0, equals);
-            std::string const value = equals == std::string::npos ? "" : part.substr(equals + 1);
-            if (key == "from")
-                from = parse_vector(value);
-            else if (key == "eye")
-                eye = parse_vector(value);
-            else if (key == "target")
-                target = parse_vector(value);
-            else if (key == "up")
-                up = parse_vector(value);
-            else if (key == "focal")
-                focal = float(number(value, "--camera focal"));
-            else
-                throw Error("--camera: '" + part +
-                            "' is not auto, from=, eye=, target=, up= or focal=");
-        }
-    }
-    if (from.x == 0 && from.y == 0 && from.z == 0)
-        throw Error("--camera: from=0,0,0 is no direction");
-    Camera camera = frame_points(mesh.positions, from, width_over_height);
-    if (target) camera.target = *target;
-    if (eye) camera.eye = *eye;
-    if (up) camera.up = *up;
-    if (focal) camera.focal = *focal;
-    if (!(camera.focal > 0)) throw Error("--camera: focal must be above 0");
-    if (camera.eye == camera.target) throw Error("--camera: eye and target are the same point");
-    if (eye || target) fit_depth_range(camera, mesh.positions);
-    return camera;
-}
-
-Machine parse_machine(Options const& o)
-{
-    Machine m;
-    m.lanes = o.lanes;
-    if (o.contraction == "all") {
-        m.contraction = Contraction::All;
-    } else if (o.contraction.starts_with("mixed:")) {
-        double const seed = number(o.contraction.substr(6), "--contraction mixed");
-        if (seed < 0 || seed != std::floor(seed) || seed > 9e15)
-            throw Error("--contraction: the seed must be a whole number, 0 or above");
-        m.contraction = Contraction::Mixed;
-        m.seed = std::uint64_t(seed);
-    } else if (o.contraction != "none") {
-        throw Error("--contraction is '" + o.contraction + "', it must be none, all or mixed:SEED");
-    }
-    return m;
-}
-
-std::map<std::string, double> parse_parameters(Options const& o)
-{
-    std::map<std::string, double> out;
-    for (std::string const& s : o.set) {
-        std::size_t const equals = s.find('=');
-        if (equals == std::string::npos) throw Error("--set is '" + s + "', it must be NAME=VALUE");
-        out[s.substr(0, equals)] = number(s.substr(equals + 1), "--set " + s.substr(0, equals));
-    }
-    return out;
-}
 
 void print_warnings(std::vector<std::string> const& warnings)
 {
@@ -306,10 +174,7 @@ int run_draw(Options const& o)
     f.height = height;
     f.view = *view;
     f.camera = parse_camera(o.camera, *job.prepared.mesh, float(width) / float(height));
-    if (o.cull == "back" || o.cull == "front")
-        f.cull = o.cull == "back" ? CullMode::Back : CullMode::Front;
-    else if (o.cull != "none")
-        throw Error("--cull is '" + o.cull + "', it must be none, back or front");
+    f.cull = parse_cull(o.cull);
 
     Config& c = job.header.config;
     c.emplace_back("width", std::int64_t(width));

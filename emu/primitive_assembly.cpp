@@ -10,21 +10,6 @@ namespace tessemu {
 
 namespace {
 
-// Clip planes. A vertex outside one of the first six is outside the view; the guard bits are set
-// where a vertex leaves the band in which 16.8 coordinates are exact.
-enum Outcode : std::uint8_t {
-    kLeft = 1,
-    kRight = 2,
-    kBottom = 4,
-    kTop = 8,
-    kNear = 16,
-    kFar = 32,
-    kGuard = 64,  // beyond the guard band, or w <= 0: needs clipping
-    kBroken = 128 // NaN or infinity: the triangle is dropped
-};
-constexpr std::uint8_t kView = kLeft | kRight | kBottom | kTop | kNear | kFar;
-constexpr std::uint8_t kNeedsClip = kNear | kFar | kGuard;
-
 // The guard band in pixels about the target's origin: 16 bits before the point, one bit kept back
 // so that differences of coordinates fit a 32-bit integer with room.
 constexpr float kGuardPixels = 16384.0f;
@@ -98,23 +83,6 @@ ClipVertex cut(ClipVertex const& in, ClipVertex const& out, float d_in, float d_
     return r;
 }
 
-void emit(RasterizerState const& state, AssembledVertices const& vertices, std::uint32_t a,
-          std::uint32_t b, std::uint32_t c, std::int32_t primitive_id,
-          std::vector<AssembledTriangle>& out)
-{
-    std::int64_t const x0 = vertices.x[a], y0 = vertices.y[a];
-    std::int64_t const area =
-        (vertices.x[b] - x0) * (vertices.y[c] - y0) - (vertices.x[c] - x0) * (vertices.y[b] - y0);
-    if (area == 0) return; // covers nothing (R104)
-    bool const clockwise = area > 0;
-    bool const front = clockwise != state.front_counter_clockwise;
-    if (state.cull == (front ? CullMode::Front : CullMode::Back)) return;
-    if (clockwise)
-        out.push_back({{a, b, c}, primitive_id, front});
-    else
-        out.push_back({{a, c, b}, primitive_id, front});
-}
-
 } // namespace
 
 void project_vertices(Viewport const& viewport, float const* shaded, std::size_t stride,
@@ -155,22 +123,11 @@ void project_vertices(Viewport const& viewport, float const* shaded, std::size_t
     }
 }
 
-void assemble_triangle(RasterizerState const& state, Viewport const& viewport,
-                       AssembledVertices& vertices, std::uint32_t a, std::uint32_t b,
-                       std::uint32_t c, std::int32_t primitive_id, AssemblyCounters& counters,
-                       std::vector<AssembledTriangle>& out)
+void clip_triangle(RasterizerState const& state, Viewport const& viewport,
+                   AssembledVertices& vertices, std::uint32_t a, std::uint32_t b, std::uint32_t c,
+                   std::int32_t primitive_id, AssemblyCounters& counters,
+                   std::vector<AssembledTriangle>& out)
 {
-    ++counters.clip_invocations;
-    std::uint8_t const ca = vertices.outcode[a], cb = vertices.outcode[b], cc = vertices.outcode[c];
-    unsigned const some = ca | cb | cc;
-    if (some & kBroken) return;
-    if (ca & cb & cc & kView) return; // wholly outside one plane of the view
-    if (!(some & kNeedsClip)) {
-        ++counters.clip_primitives;
-        emit(state, vertices, a, b, c, primitive_id, out);
-        return;
-    }
-
     ViewportTransform const t(viewport);
     // |x/w * scale + offset| <= guard for every x/w within these bounds.
     float const guard_x = (kGuardPixels - abs(t.offset_x)) / abs(t.scale_x);
@@ -209,7 +166,7 @@ void assemble_triangle(RasterizerState const& state, Viewport const& viewport,
     }
     for (std::uint32_t i = 1; i + 1 < polygon.size(); ++i) {
         ++counters.clip_primitives;
-        emit(state, vertices, first, first + i, first + i + 1, primitive_id, out);
+        emit_triangle(state, vertices, first, first + i, first + i + 1, primitive_id, out);
     }
 }
 

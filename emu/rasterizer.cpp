@@ -82,18 +82,12 @@ TileRasterizer::TileRasterizer(RenderTarget& target, Rect bounds, Viewport const
 void TileRasterizer::draw(AssembledVertices const& vertices, AssembledTriangle const& t)
 {
     std::uint32_t const* v = t.v;
-    std::int64_t const x[3] = {vertices.x[v[0]], vertices.x[v[1]], vertices.x[v[2]]};
-    std::int64_t const y[3] = {vertices.y[v[0]], vertices.y[v[1]], vertices.y[v[2]]};
-
-    // Pixels whose centre lies in the snapped bounding box; on the right and bottom side the
-    // top-left rule excludes it.
-    auto const first = [](std::int64_t lowest) { return int((lowest + 127) >> 8); };
-    auto const last = [](std::int64_t highest) { return int((highest - 129) >> 8); };
-    int const left = std::max(bounds_.left, first(std::min({x[0], x[1], x[2]})));
-    int const right = std::min(bounds_.right - 1, last(std::max({x[0], x[1], x[2]})));
-    int const top = std::max(bounds_.top, first(std::min({y[0], y[1], y[2]})));
-    int const bottom = std::min(bounds_.bottom - 1, last(std::max({y[0], y[1], y[2]})));
-    if (left > right || top > bottom) return;
+    std::int32_t const x[3] = {vertices.x[v[0]], vertices.x[v[1]], vertices.x[v[2]]};
+    std::int32_t const y[3] = {vertices.y[v[0]], vertices.y[v[1]], vertices.y[v[2]]};
+    Rect const pixels = pixel_bounds(x, y).intersect(bounds_);
+    if (pixels.empty()) return;
+    int const left = pixels.left, right = pixels.right - 1, top = pixels.top,
+              bottom = pixels.bottom - 1;
 
     // Edge i lies opposite vertex i.
     Edge const edge[3] = {

@@ -4,7 +4,7 @@
 #include "pipeline/gregory_stencils.h"
 #include "shaders_cpp/gregory/domain_shaders.h"
 #include "shaders_cpp/gregory/stencil_hull_shader.h"
-#include "shaders_cpp/gregory/vertex_shader.h"
+#include "shaders_cpp/pass_through.h"
 
 #include <algorithm>
 #include <numeric>
@@ -67,7 +67,7 @@ public:
     std::vector<DrawPass> passes(PassSettings const& settings) const override
     {
         auto const vertex = std::shared_ptr<VertexProgram const>(
-            make_vertex_program(StencilVertexShader{}, settings.machine));
+            make_vertex_program(PassThroughVertexShader{}, settings.machine));
         std::shared_ptr<DomainProgram const> domain[kKinds];
         domain[kRegularQuad] = domain_program<RegularQuadDomainShader>(settings);
         domain[kGregoryQuad] = domain_program<GregoryQuadDomainShader>(settings);

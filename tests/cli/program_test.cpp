@@ -205,6 +205,28 @@ TEST(Program, ExportWeldsAndNamesWhatItCannotHonour)
     EXPECT_NE(r.err.find("crease"), std::string::npos);
 }
 
+// Every command that README and docs print runs as printed.
+TEST(Program, CommandsOfReadmeAndDocsWork)
+{
+    std::size_t commands = 0;
+    for (char const* page : {"README.md", "docs/architecture.md", "docs/numbers.md",
+                             "docs/stages.md", "docs/gregory.md"}) {
+        std::istringstream in(test::read_text(test::source(page)));
+        std::string line;
+        std::string const prefix = "    build/release/tessemu ";
+        while (std::getline(in, line)) {
+            if (!line.starts_with(prefix)) continue;
+            std::string const arguments = line.substr(prefix.size());
+            std::string const command = "cd " + scratch().string() + " && " + TESSEMU_PROGRAM +
+                                        " " + arguments + " >out.txt 2>err.txt";
+            EXPECT_EQ(std::system(command.c_str()), 0) << page << ": " << line << "\n"
+                                                       << test::read_text(scratch() / "err.txt");
+            ++commands;
+        }
+    }
+    EXPECT_GE(commands, 5u);
+}
+
 // expected.tsv: file, outcome, class, check, ...
 TEST(Program, BadFilesBehaveAsTheTableSays)
 {

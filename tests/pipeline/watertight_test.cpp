@@ -176,29 +176,36 @@ TEST(NaiveEdgeRule, MirrorPairsHoldWithSeparateRounding)
     EXPECT_EQ(differing_share<EdgeRule::MirrorPairs>(Contraction::None, 16.0f), 0.0);
 }
 
-TEST(Contraction, ChangesTheInteriorOfNearlyEveryPatch)
+std::vector<std::vector<float>> interiors(PatchMesh const& patches, Machine const& machine)
+{
+    std::vector<std::vector<float>> out;
+    FrameSettings s;
+    s.tess_factor = 8;
+    s.machine = machine;
+    visit_surface(patches, s, ThreadPool(), [&](DrawPass const&, ShadedPatch const& p) {
+        std::vector<float> inside;
+        auto const& t = p.points->patch;
+        for (std::size_t k = 0; k < t.points(); ++k)
+            if (t.u[k] && t.v[k] && t.u[k] != kFixedOne && t.v[k] != kFixedOne)
+                for (std::size_t c = 0; c < 3; ++c) inside.push_back(p.outputs[c * p.stride + k]);
+        out.push_back(std::move(inside));
+    });
+    return out;
+}
+
+TEST(Contraction, EveryPolicyChangesTheInteriorOfNearlyEveryPatch)
 {
     Loaded const m = load_patches("jug");
-    ThreadPool const threads;
-    std::vector<std::vector<float>> interiors[2];
-    for (int i = 0; i < 2; ++i) {
-        FrameSettings s;
-        s.tess_factor = 8;
-        s.machine.contraction = i ? Contraction::All : Contraction::None;
-        visit_surface(*m.patches, s, threads, [&](DrawPass const&, ShadedPatch const& p) {
-            std::vector<float> inside;
-            auto const& t = p.points->patch;
-            for (std::size_t k = 0; k < t.points(); ++k)
-                if (t.u[k] && t.v[k] && t.u[k] != kFixedOne && t.v[k] != kFixedOne)
-                    for (std::size_t c = 0; c < 3; ++c)
-                        inside.push_back(p.outputs[c * p.stride + k]);
-            interiors[i].push_back(std::move(inside));
-        });
-    }
-    std::size_t changed = 0;
-    for (std::size_t p = 0; p < interiors[0].size(); ++p)
-        changed += interiors[0][p] != interiors[1][p];
-    EXPECT_GE(changed, interiors[0].size() * 95 / 100);
+    auto const machines = contraction_policies();
+    std::vector<std::vector<std::vector<float>>> results;
+    for (std::size_t i = 0; i < 4; ++i) results.push_back(interiors(*m.patches, machines[i]));
+    for (std::size_t i = 0; i < results.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k) {
+            std::size_t changed = 0;
+            for (std::size_t p = 0; p < results[i].size(); ++p)
+                changed += results[i][p] != results[k][p];
+            EXPECT_GE(changed, results[i].size() * 95 / 100) << "policies " << k << " and " << i;
+        }
 }
 
 } // namespace

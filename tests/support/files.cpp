@@ -11,6 +11,11 @@ std::filesystem::path golden(std::string const& name)
     return std::filesystem::path(TESSEMU_SOURCE_DIR) / "tests/golden" / name;
 }
 
+std::filesystem::path source(std::string const& name)
+{
+    return std::filesystem::path(TESSEMU_SOURCE_DIR) / name;
+}
+
 std::filesystem::path shared(std::string const& name)
 {
     return std::filesystem::path(TESSEMU_SHARED_DIR) / name;

@@ -10,6 +10,8 @@ namespace tessemu::test {
 
 /// A file of tests/golden.
 std::filesystem::path golden(std::string const& name);
+/// A file of the project.
+std::filesystem::path source(std::string const& name);
 /// A file of the shared folder beside the project; may be missing.
 std::filesystem::path shared(std::string const& name);
 std::string read_text(std::filesystem::path const& path);
