@@ -11,19 +11,30 @@
 namespace tessemu {
 namespace {
 
+struct Scene {
+    PreparedMesh mesh;
+    std::unique_ptr<PatchMesh> patches;
+    FrameSettings settings;
+
+    explicit Scene(float tess_factor)
+    {
+        std::string const bigguy = std::string(TESSEMU_SHARED_DIR) + "/models/bigguy.obj";
+        Technique const& technique = find_technique("gregory-stencil");
+        mesh = prepare_mesh(load_model(std::filesystem::exists(bigguy) ? bigguy : "jug").mesh,
+                            technique);
+        patches = technique.build(*mesh.topology, {});
+        settings.tess_factor = tess_factor;
+        settings.camera = frame_points(mesh.mesh->positions, {0.55f, 0.42f, 1}, 1);
+    }
+};
+
 void whole_frame(benchmark::State& state)
 {
-    std::string const bigguy = std::string(TESSEMU_SHARED_DIR) + "/models/bigguy.obj";
-    Technique const& technique = find_technique("gregory-stencil");
-    PreparedMesh const mesh =
-        prepare_mesh(load_model(std::filesystem::exists(bigguy) ? bigguy : "jug").mesh, technique);
-    auto const patches = technique.build(*mesh.topology, {});
-    FrameSettings s;
-    s.tess_factor = float(state.range(0));
-    s.camera = frame_points(mesh.mesh->positions, {0.55f, 0.42f, 1}, 1);
+    Scene const scene(float(state.range(0)));
     ThreadPool const threads(int(state.range(1)));
     DrawStatistics statistics;
-    for (auto _ : state) statistics = draw_frame(*patches, s, threads).statistics;
+    for (auto _ : state)
+        statistics = draw_frame(*scene.patches, scene.settings, threads).statistics;
     PipelineStatistics const& p = statistics.pipeline;
     if (p.PSInvocations == 0) state.SkipWithError("nothing was drawn");
     state.counters["points"] = double(p.DSInvocations);
@@ -45,16 +56,10 @@ BENCHMARK(whole_frame)
 
 void geometry_only(benchmark::State& state)
 {
-    std::string const bigguy = std::string(TESSEMU_SHARED_DIR) + "/models/bigguy.obj";
-    Technique const& technique = find_technique("gregory-stencil");
-    PreparedMesh const mesh =
-        prepare_mesh(load_model(std::filesystem::exists(bigguy) ? bigguy : "jug").mesh, technique);
-    auto const patches = technique.build(*mesh.topology, {});
-    FrameSettings s;
-    s.tess_factor = float(state.range(0));
+    Scene const scene(float(state.range(0)));
     ThreadPool const threads(1);
     DrawStatistics statistics;
-    for (auto _ : state) statistics = visit_surface(*patches, s, threads, {});
+    for (auto _ : state) statistics = visit_surface(*scene.patches, scene.settings, threads, {});
     if (statistics.pipeline.DSInvocations == 0) state.SkipWithError("nothing was evaluated");
     state.counters["Mpoint/s"] =
         benchmark::Counter(double(statistics.pipeline.DSInvocations) * 1e-6,
