@@ -49,7 +49,8 @@ public:
     virtual int patch_constant_floats() const = 0;
     virtual int output_floats() const = 0;
     virtual std::vector<ResourceInfo> resources() const = 0;
-    /// Runs a patch. `patch_constants` says how many registers the hull shader wrote.
+    /// Runs a patch, inside a StageScope that the caller holds open over many patches.
+    /// `patch_constants` says how many registers the hull shader wrote.
     virtual void run(DomainBatch const& batch, int patch_constants,
                      StageCounters& counters) const = 0;
     /// The contraction seed of the stage's door.

@@ -95,64 +95,42 @@ public:
     }
 
 private:
-    // The cache decides which vertices run; they run in blocks, and again after a miss.
+    // The cache decides which vertices run, and run again after a miss. They run in blocks; a
+    // repeated run gives the same bits, so only the first one writes and threads never share a
+    // place.
     void run_vertex_shader()
     {
         VertexProgram const& vs = *d_.vertex_shader;
-        auto const out = std::size_t(vs.output_floats());
-        shaded_vertices_.resize(std::size_t(primitives_.vertex_id_limit) * out);
-        VertexCache cache(options_.vertex_cache, primitives_.vertex_id_limit);
-        TouchedElements seen(primitives_.vertex_id_limit);
+        std::uint32_t const limit = primitives_.vertex_id_limit;
+        shaded_vertices_.resize(std::size_t(limit) * std::size_t(vs.output_floats()));
+        VertexCache cache(options_.vertex_cache, limit);
+        std::vector<char> shaded(limit, 0);
         constexpr std::size_t kBlock = 1 << 16, kPiece = 1 << 11;
-        std::vector<std::uint32_t> ids;
-        std::vector<StageCounters> counters(kBlock / kPiece);
-        auto const flush = [&] {
+        std::vector<std::uint32_t> fresh, repeated;
+
+        auto const run = [&](std::vector<std::uint32_t>& ids, float* outputs) {
             std::size_t const pieces = (ids.size() + kPiece - 1) / kPiece;
-            std::fill(counters.begin(), counters.end(), StageCounters{});
-            // A vertex that runs twice in a block writes the same bits twice; two threads must not
-            // write them at once, so repeats move to the next block.
+            std::vector<StageCounters> counters(pieces);
             threads_.parallel_for(pieces, [&](std::size_t i) {
-                auto const piece =
-                    std::span(ids).subspan(i * kPiece, std::min(kPiece, ids.size() - i * kPiece));
-                vs.run(piece, call_.vertices, shaded_vertices_.data(), counters[i], vs_buffers_);
+                std::size_t const n = std::min(kPiece, ids.size() - i * kPiece);
+                vs.run(std::span(ids).subspan(i * kPiece, n), call_.vertices, outputs, counters[i],
+                       vs_buffers_);
             });
-            for (std::size_t i = 0; i < pieces; ++i) vertex_ += counters[i];
+            for (StageCounters const& c : counters) vertex_ += c;
             ids.clear();
         };
-        std::vector<std::uint32_t> block_of(primitives_.vertex_id_limit, 0);
-        std::uint32_t block = 1;
-        std::vector<std::uint32_t> repeats;
-        auto const flush_block = [&] {
-            flush();
-            while (!repeats.empty()) {
-                ++block;
-                std::vector<std::uint32_t> again;
-                for (std::uint32_t v : repeats) {
-                    if (block_of[v] == block) {
-                        again.push_back(v);
-                    } else {
-                        block_of[v] = block;
-                        ids.push_back(v);
-                    }
-                }
-                repeats.swap(again);
-                flush();
-            }
-            ++block;
+        auto const flush = [&] {
+            vertex_.input_touched += fresh.size();
+            run(fresh, shaded_vertices_.data());
+            run(repeated, nullptr);
         };
         for (std::uint32_t v : primitives_.vertices) {
-            seen.mark(v);
             if (cache.access(v)) continue;
-            if (block_of[v] == block) {
-                repeats.push_back(v);
-            } else {
-                block_of[v] = block;
-                ids.push_back(v);
-            }
-            if (ids.size() + repeats.size() == kBlock) flush_block();
+            (shaded[v] ? repeated : fresh).push_back(v);
+            shaded[v] = 1;
+            if (fresh.size() + repeated.size() == kBlock) flush();
         }
-        flush_block();
-        vertex_.input_touched = seen.count();
+        flush();
         stats_.pipeline.VSInvocations = vertex_.invocations;
     }
 

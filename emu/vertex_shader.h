@@ -31,7 +31,8 @@ public:
     virtual int output_floats() const = 0;
     virtual std::vector<ResourceInfo> resources() const = 0;
     /// Runs `ids`, reading `vertices[id * input_floats]` (zeros past the end, R35), writing
-    /// `outputs[id * output_floats]`.
+    /// `outputs[id * output_floats]`. Without `outputs` the runs are counted and their results
+    /// dropped.
     virtual void run(std::span<std::uint32_t const> ids, std::span<float const> vertices,
                      float* outputs, StageCounters& counters,
                      StageBuffers const& buffers) const = 0;
@@ -71,6 +72,7 @@ public:
             });
             site_state.scope = site_state.next = 0;
             Output const output = shader_(VertexInput<T>{id}, input);
+            if (!outputs) continue;
             k = 0;
             for_each_scalar(output, [&](auto const& s) {
                 Lanes<N> const v = lanes_value(s);

@@ -67,7 +67,7 @@ def stages():
         if i < len(flows):
             svg.append('<path d="M%d %dv%d" stroke="#555" marker-end="url(#a)"/>' % (20 + w / 2, y + h, step - h - 5))
             svg.append('<text x="%d" y="%d" fill="#666" font-size="12">%s</text>' % (30 + w / 2, y + h + 17, flows[i]))
-    svg.append('<text x="230" y="30" fill="#333">blue: programmable, a shader runs on lanes and is counted</text>')
+    svg.append('<text x="230" y="30" fill="#333">blue: programmable (a shader, counted)</text>')
     svg.append('<text x="230" y="50" fill="#333">grey: fixed function</text>')
     svg.append('<defs><marker id="a" viewBox="0 0 6 6" refX="3" refY="3" markerWidth="6" markerHeight="6" orient="auto">'
                '<path d="M0 0L6 3L0 6z" fill="#555"/></marker></defs>')
