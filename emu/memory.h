@@ -40,12 +40,14 @@ class TouchedElements {
 public:
     explicit TouchedElements(std::size_t elements) : words_((elements + 63) / 64) {}
 
-    void mark(std::size_t element)
+    void mark(std::size_t element) { mark_word(element / 64, std::uint64_t(1) << (element % 64)); }
+    /// Elements first + i for each set bit i of `bits`.
+    void mark_run(std::size_t first, std::uint32_t bits)
     {
-        std::atomic<std::uint64_t>& word = words_[element / 64];
-        std::uint64_t const bit = std::uint64_t(1) << (element % 64);
-        if (!(word.load(std::memory_order_relaxed) & bit))
-            word.fetch_or(bit, std::memory_order_relaxed);
+        std::size_t const shift = first % 64;
+        mark_word(first / 64, std::uint64_t(bits) << shift);
+        if (std::uint64_t const over = shift > 32 ? std::uint64_t(bits) >> (64 - shift) : 0)
+            mark_word(first / 64 + 1, over);
     }
     std::uint64_t count() const
     {
@@ -55,6 +57,13 @@ public:
     }
 
 private:
+    // Most marks are there already: a read is cheap, a write would bounce between cores.
+    void mark_word(std::size_t i, std::uint64_t bits)
+    {
+        if ((words_[i].load(std::memory_order_relaxed) & bits) != bits)
+            words_[i].fetch_or(bits, std::memory_order_relaxed);
+    }
+
     std::vector<std::atomic<std::uint64_t>> words_;
 };
 
@@ -83,13 +92,23 @@ template <class T> void count_fetch(int slot, std::int32_t index, std::size_t si
         if (s.touched && std::size_t(index) < size) s.touched->mark(std::size_t(index));
     }
 }
-template <class T, int N> void count_fetch(int slot, IntLanes<N> index, std::size_t size)
+/// Neighbouring elements for neighbouring lanes, none out of range: a vector load.
+template <int N> bool is_run(IntLanes<N> index, std::size_t size)
+{
+    auto const first = std::size_t(index.raw[0]);
+    return first < size && size - first >= std::size_t(N) &&
+           all(index - IntLanes<N>::iota() == IntLanes<N>(index.raw[0]));
+}
+
+template <class T, int N>
+void count_fetch(int slot, IntLanes<N> index, std::size_t size, bool run = false)
 {
     if constexpr (ScalarTraits<T>::kCounted) {
         if (!execution.buffers) return;
         FetchSlot& s = execution.buffers[slot];
         s.count += execution.active_lanes;
         if (!s.touched) return;
+        if (run) return s.touched->mark_run(std::size_t(index.raw[0]), execution.active_bits);
         for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
             auto const i = std::size_t(index.raw[std::countr_zero(bits)]);
             if (i < size) s.touched->mark(i);
@@ -140,18 +159,19 @@ template <class T, class E> auto load(Buffer<E> const& buffer, std::int32_t i)
 template <class T, class E, int N> auto load(Buffer<E> const& buffer, IntLanes<N> i)
 {
     std::span<E const> const e = buffer.elements();
-    detail::count_fetch<T>(buffer.slot(), i, e.size());
-    if constexpr (std::floating_point<E>) {
-        Lanes<N> r(0.0f);
+    bool const run = sizeof(E) == 4 && detail::is_run(i, e.size());
+    detail::count_fetch<T>(buffer.slot(), i, e.size(), run);
+    std::conditional_t<std::floating_point<E>, Lanes<N>, IntLanes<N>> r(0);
+    if (run) {
+        __builtin_memcpy(&r.raw, e.data() + i.raw[0], sizeof r.raw);
+    } else {
         for (int k = 0; k < N; ++k)
             if (std::size_t(i.raw[k]) < e.size()) r.raw[k] = e[std::size_t(i.raw[k])];
-        return T(r);
-    } else {
-        IntLanes<N> r(0);
-        for (int k = 0; k < N; ++k)
-            if (std::size_t(i.raw[k]) < e.size()) r.raw[k] = std::int32_t(e[std::size_t(i.raw[k])]);
-        return r;
     }
+    if constexpr (std::floating_point<E>)
+        return T(r);
+    else
+        return r;
 }
 
 /// 2D texture of float4 texels, rows from the top.

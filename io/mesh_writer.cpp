@@ -24,6 +24,10 @@ struct Vertex {
 };
 static_assert(sizeof(Vertex) == 36);
 
+struct Triangle {
+    std::uint32_t v[3], patch;
+};
+
 struct Bits {
     std::array<std::uint32_t, 6> words;
     friend bool operator==(Bits const&, Bits const&) = default;
@@ -39,41 +43,64 @@ struct BitsHash {
 
 } // namespace
 
+// Vertices and triangles wait in two binary files; the format is made of them at the end.
 struct MeshWriter::Impl {
     fs::path path, vertex_path, triangle_path;
-    bool ply, weld, finished = false;
+    bool ply, weld;
     std::ofstream vertex_file, triangle_file;
     std::uint64_t vertices = 0, triangles = 0;
     std::unordered_map<Bits, std::uint32_t, BitsHash> welded;
     std::vector<std::uint32_t> number; // of the patch's points
-    Sha256 vertex_hash, triangle_hash;
-    std::string vertex_digest, triangle_digest;
 
     void put(Vertex const& v)
     {
-        vertex_hash.add(&v, sizeof v);
-        if (ply) {
-            vertex_file.write(reinterpret_cast<char const*>(&v), sizeof v);
-        } else {
-            vertex_file << fmt::format("v {} {} {}\nvn {} {} {}\nvt {} {}\n", v.position[0],
-                                       v.position[1], v.position[2], v.normal[0], v.normal[1],
-                                       v.normal[2], v.uv[0], v.uv[1]);
-        }
+        vertex_file.write(reinterpret_cast<char const*>(&v), sizeof v);
         ++vertices;
     }
-
-    void put_triangle(std::uint32_t const (&t)[3])
+    void put(Triangle const& t)
     {
-        triangle_hash.add(t, sizeof t);
-        if (ply) {
-            char const three = 3;
-            triangle_file.write(&three, 1);
-            triangle_file.write(reinterpret_cast<char const*>(t), sizeof t);
-        } else {
-            triangle_file << fmt::format("f {0}/{0}/{0} {1}/{1}/{1} {2}/{2}/{2}\n", t[0] + 1,
-                                         t[1] + 1, t[2] + 1);
-        }
+        triangle_file.write(reinterpret_cast<char const*>(&t), sizeof t);
         ++triangles;
+    }
+
+    template <class Record, class Visit> static void read(fs::path const& file, Visit const& visit)
+    {
+        std::ifstream in(file, std::ios::binary);
+        Record r;
+        while (in.read(reinterpret_cast<char*>(&r), sizeof r)) visit(r);
+    }
+
+    void write_ply(std::ostream& out) const
+    {
+        out << fmt::format("ply\nformat binary_little_endian 1.0\ncomment tessemu\n"
+                           "element vertex {}\n"
+                           "property float x\nproperty float y\nproperty float z\n"
+                           "property float nx\nproperty float ny\nproperty float nz\n"
+                           "property float u\nproperty float v\nproperty int patch\n"
+                           "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+                           vertices, triangles);
+        read<Vertex>(vertex_path, [&](Vertex const& v) {
+            out.write(reinterpret_cast<char const*>(&v), sizeof v);
+        });
+        read<Triangle>(triangle_path, [&](Triangle const& t) {
+            out.put(3);
+            out.write(reinterpret_cast<char const*>(t.v), sizeof t.v);
+        });
+    }
+
+    void write_obj(std::ostream& out) const
+    {
+        read<Vertex>(vertex_path, [&](Vertex const& v) {
+            out << fmt::format("v {} {} {}\nvn {} {} {}\nvt {} {}\n", v.position[0], v.position[1],
+                               v.position[2], v.normal[0], v.normal[1], v.normal[2], v.uv[0],
+                               v.uv[1]);
+        });
+        std::uint32_t patch = 0xffffffffu;
+        read<Triangle>(triangle_path, [&](Triangle const& t) {
+            if (t.patch != patch) out << fmt::format("g patch_{}\n", patch = t.patch);
+            out << fmt::format("f {0}/{0}/{0} {1}/{1}/{1} {2}/{2}/{2}\n", t.v[0] + 1, t.v[1] + 1,
+                               t.v[2] + 1);
+        });
     }
 };
 
@@ -129,13 +156,12 @@ void MeshWriter::add(DrawPass const& pass, ShadedPatch const& patch)
         FacePoint const uv = domain_to_face(origin, points.u[i], points.v[i]);
         m.put({{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {uv.u, uv.v}, origin.face});
     }
-    if (!m.ply) m.triangle_file << fmt::format("g patch_{}\n", origin.face);
     auto const& index = points.patch.indices;
     for (std::size_t i = 0; i + 2 < index.size(); i += 3) {
-        std::uint32_t const t[3] = {m.number[index[i]], m.number[index[i + 1]],
-                                    m.number[index[i + 2]]};
-        if (m.weld && (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])) continue;
-        m.put_triangle(t);
+        Triangle const t{{m.number[index[i]], m.number[index[i + 1]], m.number[index[i + 2]]},
+                         origin.face};
+        bool const collapsed = t.v[0] == t.v[1] || t.v[1] == t.v[2] || t.v[2] == t.v[0];
+        if (!m.weld || !collapsed) m.put(t);
     }
 }
 
@@ -144,22 +170,12 @@ void MeshWriter::finish()
     Impl& m = *impl_;
     m.vertex_file.close();
     m.triangle_file.close();
-    m.vertex_digest = m.vertex_hash.hex();
-    m.triangle_digest = m.triangle_hash.hex();
     write_atomically(m.path, [&](fs::path const& temporary) {
         std::ofstream out(temporary, std::ios::binary);
         if (m.ply)
-            out << fmt::format(
-                "ply\nformat binary_little_endian 1.0\ncomment tessemu\nelement vertex {}\n"
-                "property float x\nproperty float y\nproperty float z\n"
-                "property float nx\nproperty float ny\nproperty float nz\n"
-                "property float u\nproperty float v\nproperty int patch\n"
-                "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-                m.vertices, m.triangles);
-        for (fs::path const& part : {m.vertex_path, m.triangle_path}) {
-            std::ifstream in(part, std::ios::binary);
-            if (in.peek() != std::ifstream::traits_type::eof()) out << in.rdbuf();
-        }
+            m.write_ply(out);
+        else
+            m.write_obj(out);
         out.close();
         if (!out || !m.vertex_file || !m.triangle_file)
             throw WriteError(m.path.string() + ": writing failed (is the disk full?)");
@@ -177,8 +193,9 @@ std::uint64_t MeshWriter::triangles() const
 
 void MeshWriter::add_to_hash(Sha256& hash) const
 {
-    hash.add(impl_->vertex_digest.data(), impl_->vertex_digest.size());
-    hash.add(impl_->triangle_digest.data(), impl_->triangle_digest.size());
+    Impl::read<Vertex>(impl_->vertex_path, [&](Vertex const& v) { hash.add(&v, sizeof v); });
+    Impl::read<Triangle>(impl_->triangle_path,
+                         [&](Triangle const& t) { hash.add(t.v, sizeof t.v); });
 }
 
 } // namespace tessemu

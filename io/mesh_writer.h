@@ -10,6 +10,8 @@
 
 namespace tessemu {
 
+class Sha256;
+
 /// Streams a mesh to disk: vertices and triangles go to two temporary files that become one at the
 /// end, so memory holds one patch (with welding: one entry per vertex).
 ///
@@ -30,10 +32,10 @@ public:
 
     std::uint64_t vertices() const;
     std::uint64_t triangles() const;
-    /// Adds the mesh to a hash: two digests of 32 bytes, over the vertices (x y z nx ny nz u v as
-    /// little-endian floats, patch as a 32-bit integer) and over the triangles (three 32-bit
-    /// numbers). Call after finish().
-    void add_to_hash(class Sha256& hash) const;
+    /// Adds the mesh's bytes to a hash, little endian: the vertices (x y z nx ny nz u v as floats,
+    /// patch as a 32-bit integer), then the triangles (three 32-bit vertex numbers). The same for
+    /// both formats. Call after finish().
+    void add_to_hash(Sha256& hash) const;
 
 private:
     struct Impl;

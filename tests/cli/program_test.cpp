@@ -205,6 +205,18 @@ TEST(Program, ExportWeldsAndNamesWhatItCannotHonour)
     EXPECT_NE(r.err.find("crease"), std::string::npos);
 }
 
+TEST(Program, AMeshHasOneHashInBothFormats)
+{
+    std::string hashes[2];
+    for (int i = 0; i < 2; ++i) {
+        std::string const file = (scratch() / (i ? "m.obj" : "m.ply")).string();
+        Result const r = run("export jug --tess 2.5 --json - -o " + file);
+        ASSERT_EQ(r.status, 0) << r.err;
+        hashes[i] = Json::parse(r.out)["hash"];
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+}
+
 // Every command that README and docs print runs as printed.
 TEST(Program, CommandsOfReadmeAndDocsWork)
 {

@@ -4,6 +4,9 @@
 #include "emu/graphics_pipeline.h"
 
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <set>
 
 namespace tessemu {
 namespace {
@@ -173,6 +176,41 @@ TEST(Buffer, OutOfRangeReadsGiveZero)
     EXPECT_EQ(load<float>(t, 1, 1).x, 1.0f);
     EXPECT_EQ(load<float>(t, 2, 1).x, 0.0f);
     EXPECT_EQ(load<float>(t, 0, -1).w, 0.0f);
+}
+
+// Runs of neighbouring elements take a faster way; it must read and count like the slow one.
+RC_GTEST_PROP(Buffer, PerLaneLoadsReadAndCountLikeSingleOnes, ())
+{
+    using T = Counted<Lanes<16>>;
+    std::vector<float> values(std::size_t(*rc::gen::inRange(1, 300)));
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = float(i) + 0.5f;
+    Buffer<float> const buffer(values, 2, "b");
+    TouchedElements touched(values.size());
+    std::array<FetchSlot, kBufferSlots> slots{};
+    slots[2].touched = &touched;
+    execution = Execution{};
+    execution.buffers = slots.data();
+    std::set<std::int32_t> expected;
+    std::uint64_t fetches = 0;
+    for (int turn = 0; turn < 4; ++turn) {
+        std::int32_t const first = *rc::gen::inRange(-20, 320);
+        bool const run = *rc::gen::arbitrary<bool>();
+        IntLanes<16> index(0);
+        for (int l = 0; l < 16; ++l) index.raw[l] = run ? first + l : *rc::gen::inRange(-20, 320);
+        std::uint32_t const active = *rc::gen::inRange(1u, 0x10000u);
+        execution.activate(active);
+        Lanes<16> const r = load<T>(buffer, index).value;
+        for (int l = 0; l < 16; ++l) {
+            bool const inside = index.raw[l] >= 0 && std::size_t(index.raw[l]) < values.size();
+            RC_ASSERT(r.raw[l] == (inside ? values[std::size_t(index.raw[l])] : 0.0f));
+            if (!(active >> l & 1)) continue;
+            ++fetches;
+            if (inside) expected.insert(index.raw[l]);
+        }
+    }
+    execution = Execution{};
+    RC_ASSERT(slots[2].count == fetches);
+    RC_ASSERT(touched.count() == expected.size());
 }
 
 } // namespace
