@@ -21,6 +21,7 @@ namespace detail {
 template <int N> struct Raw {
     typedef float f32 __attribute__((vector_size(4 * N)));
     typedef std::int32_t i32 __attribute__((vector_size(4 * N)));
+    typedef std::uint32_t u32 __attribute__((vector_size(4 * N)));
 };
 } // namespace detail
 
@@ -69,6 +70,7 @@ template <int N> struct Mask {
 
 template <int N> struct IntLanes {
     using Raw = typename detail::Raw<N>::i32;
+    using Wrap = typename detail::Raw<N>::u32;
     Raw raw;
 
     IntLanes() = default;
@@ -81,13 +83,14 @@ template <int N> struct IntLanes {
         for (int i = 0; i < N; ++i) r[i] = i;
         return r;
     }
-    friend IntLanes operator+(IntLanes a, IntLanes b) { return a.raw + b.raw; }
-    friend IntLanes operator-(IntLanes a, IntLanes b) { return a.raw - b.raw; }
-    friend IntLanes operator*(IntLanes a, IntLanes b) { return a.raw * b.raw; }
+    // Shader integers wrap.
+    friend IntLanes operator+(IntLanes a, IntLanes b) { return Raw(Wrap(a.raw) + Wrap(b.raw)); }
+    friend IntLanes operator-(IntLanes a, IntLanes b) { return Raw(Wrap(a.raw) - Wrap(b.raw)); }
+    friend IntLanes operator*(IntLanes a, IntLanes b) { return Raw(Wrap(a.raw) * Wrap(b.raw)); }
     friend IntLanes operator&(IntLanes a, IntLanes b) { return a.raw & b.raw; }
     friend IntLanes operator|(IntLanes a, IntLanes b) { return a.raw | b.raw; }
     friend IntLanes operator^(IntLanes a, IntLanes b) { return a.raw ^ b.raw; }
-    friend IntLanes operator<<(IntLanes a, IntLanes b) { return a.raw << b.raw; }
+    friend IntLanes operator<<(IntLanes a, IntLanes b) { return Raw(Wrap(a.raw) << Wrap(b.raw)); }
     friend IntLanes operator>>(IntLanes a, IntLanes b) { return a.raw >> b.raw; }
     friend Mask<N> operator==(IntLanes a, IntLanes b) { return Mask<N>(a.raw == b.raw); }
     friend Mask<N> operator!=(IntLanes a, IntLanes b) { return Mask<N>(a.raw != b.raw); }

@@ -90,6 +90,14 @@ TYPED_TEST(LanesOf, MaskBitsAreLanesInOrder)
     EXPECT_FALSE(all(Mask<N>::first(N - 1)));
 }
 
+TYPED_TEST(LanesOf, IntegersWrap)
+{
+    IntLanes<lanes_of<TypeParam>> const big(0x7fffffff);
+    EXPECT_EQ((big + big).raw[0], -2);
+    EXPECT_EQ((big * big).raw[0], 1);
+    EXPECT_EQ((big << IntLanes<lanes_of<TypeParam>>(1)).raw[0], -2);
+}
+
 // Rules R12, R18 and the choice I-5.
 TEST(MinMax, LoseNanAndOrderSignedZeros)
 {
