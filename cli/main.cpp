@@ -166,7 +166,9 @@ int run_draw(Options const& o)
 {
     if (!o.output.empty()) check_image_path(o.output);
     auto const view = view_from_name(o.view);
-    if (!view) throw Error("--view is '" + o.view + "', it must be lit, normals, patches or depth");
+    if (!view)
+        throw Error("--view is '" + o.view +
+                    "', it must be lit, normals, patches, depth, wire or coverage");
     auto const [width, height] = parse_size(o.size);
     Job job = prepare(o, "draw");
     FrameSettings& f = job.frame;
@@ -175,13 +177,16 @@ int run_draw(Options const& o)
     f.view = *view;
     f.camera = parse_camera(o.camera, *job.prepared.mesh, float(width) / float(height));
     f.cull = parse_cull(o.cull);
+    f.samples = o.samples;
+    if (o.output.ends_with(".exr")) f.color_format = Format::R32G32B32A32_FLOAT;
 
     Config& c = job.header.config;
     c.emplace_back("width", std::int64_t(width));
     c.emplace_back("height", std::int64_t(height));
     c.emplace_back("view", o.view);
     c.emplace_back("cull", o.cull);
-    c.emplace_back("samples", std::int64_t(1));
+    c.emplace_back("samples", std::int64_t(o.samples));
+    c.emplace_back("color_format", std::string(info(f.color_format).name));
     c.emplace_back("camera_eye", as_doubles(f.camera.eye));
     c.emplace_back("camera_target", as_doubles(f.camera.target));
     c.emplace_back("camera_up", as_doubles(f.camera.up));
@@ -194,9 +199,9 @@ int run_draw(Options const& o)
         draw_frame(*job.patches, f, threads, [&](std::size_t n, std::size_t all) { bar(n, all); });
     bar.clear();
     add_run(job.header, job, threads, clock.seconds());
-    if (!o.output.empty()) write_image(frame.target, o.output);
+    if (!o.output.empty()) write_image(frame.color, o.output);
     if (!o.json.empty())
-        write_result(o.json, draw_report(job.header, frame.statistics, frame.target));
+        write_result(o.json, draw_report(job.header, frame.statistics, frame.color, frame.depth));
     if (o.json != "-") fmt::print("{}", counters_table(frame.statistics));
     return 0;
 }
@@ -373,7 +378,14 @@ int main(int argc, char** argv)
     draw->add_option("--camera", o.camera,
                      "auto, from=X,Y,Z, or eye=X,Y,Z:target=X,Y,Z:up=X,Y,Z:focal=F")
         ->capture_default_str();
-    draw->add_option("--view", o.view, "lit, normals, patches, depth")->capture_default_str();
+    draw->add_option(
+            "--view", o.view,
+            "lit, normals, patches, depth, wire, coverage: how often a pixel is covered, before "
+            "depth")
+        ->capture_default_str();
+    draw->add_option("--samples", o.samples, "1, 2, 4 or 8 samples a pixel, resolved")
+        ->check(CLI::IsMember({1, 2, 4, 8}))
+        ->capture_default_str();
     draw->add_option("--cull", o.cull, "none, back, front")->capture_default_str();
     add_surface_options(*draw, o);
 

@@ -52,9 +52,9 @@ std::pair<int, int> parse_size(std::string const& text)
     int out[2];
     for (std::size_t i = 0; i < 2; ++i) {
         double const x = number(parts[i], "--size");
-        if (x != std::floor(x) || x < 1 || x > RenderTarget::kMaxSize)
+        if (x != std::floor(x) || x < 1 || x > ColorTarget::kMaxSize)
             throw Error(fmt::format("--size: {} is not a whole number from 1 to {}", parts[i],
-                                    RenderTarget::kMaxSize));
+                                    ColorTarget::kMaxSize));
         out[i] = int(x);
     }
     return {out[0], out[1]};

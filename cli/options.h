@@ -17,7 +17,7 @@ struct Options {
     std::vector<double> factors;
     std::vector<std::string> set;
     double tess = 8;
-    int lanes = kNativeLanes, threads = 0;
+    int lanes = kNativeLanes, threads = 0, samples = 1;
     bool weld = false;
 };
 

@@ -41,6 +41,7 @@ namespace detail {
 template <class M, class Work, class V> V masked(M mask, Work&& work, V const& otherwise)
 {
     SiteScope<scalar_of<V>> const here;
+    execution.features |= kBranches;
     std::uint32_t const bits = mask.bits() & execution.active_bits;
     if (bits == 0) return otherwise;
     Branch const branch(bits);
@@ -60,6 +61,22 @@ template <class M, class Work, class V> constexpr V when(M mask, Work&& work, V 
         return mask ? V(work()) : otherwise;
     } else {
         return detail::masked(mask, work, otherwise);
+    }
+}
+
+/// `work()` in the lanes of `mask`: for work that gives no value, such as emitting a vertex. What
+/// it writes must honour the active lanes by itself.
+template <class T, class M, class Work> constexpr void when(M mask, Work&& work)
+{
+    SiteScope<T> const here;
+    if constexpr (std::same_as<M, bool>) {
+        if (mask) work();
+    } else {
+        execution.features |= kBranches;
+        std::uint32_t const bits = mask.bits() & execution.active_bits;
+        if (bits == 0) return;
+        detail::Branch const branch(bits);
+        work();
     }
 }
 

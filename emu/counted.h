@@ -42,6 +42,13 @@ constexpr std::uint64_t flops_loop10(FlopCount const& c)
 /// Fetches of one resource by one thread.
 struct FetchSlot;
 
+/// What a shader does besides straight-line arithmetic, as a bit each.
+enum ShaderFeature : std::uint32_t {
+    kBranches = 1,    ///< when(): invocations differ in their counts
+    kFetches = 2,     ///< reads a buffer or a texture
+    kDerivatives = 4, ///< looks at its 2x2 quad
+};
+
 /// The state of the group of invocations that the thread is running.
 struct Execution {
     FlopCount pending{};            ///< counted per group, since the active lanes last changed
@@ -49,6 +56,7 @@ struct Execution {
     std::uint32_t active_bits = 1;  ///< bit i: lane i runs
     std::uint32_t active_lanes = 1; ///< popcount of active_bits
     FetchSlot* buffers = nullptr;   ///< the stage's buffer slots, by slot number
+    std::uint32_t features = 0;     ///< ShaderFeature bits met since the state was made
 
     void activate(std::uint32_t bits)
     {

@@ -47,7 +47,8 @@ public:
     virtual int control_points() const = 0;
     virtual int control_point_floats() const = 0;
     virtual int patch_constant_floats() const = 0;
-    virtual int output_floats() const = 0;
+    virtual OutputLayout output() const = 0;
+    int output_floats() const { return output().floats; }
     virtual std::vector<ResourceInfo> resources() const = 0;
     /// Runs a patch, inside a StageScope that the caller holds open over many patches.
     /// `patch_constants` says how many registers the hull shader wrote.
@@ -69,7 +70,7 @@ public:
     int control_points() const override { return Shader::kControlPoints; }
     int control_point_floats() const override { return scalar_count<Point>(); }
     int patch_constant_floats() const override { return scalar_count<Constant>(); }
-    int output_floats() const override { return scalar_count<Output>(); }
+    OutputLayout output() const override { return output_layout<Output>(); }
     std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
     std::uint64_t seed() const override { return seed_; }
 

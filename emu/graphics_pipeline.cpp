@@ -58,8 +58,40 @@ GraphicsPipeline::GraphicsPipeline(GraphicsPipelineDesc desc) : desc_(std::move(
                 "lines come from isolines and triangles from quad and tri domains (R75)");
         shaded = ds.output_floats();
     }
-    require(!d.pixel_shader || d.pixel_shader->input_floats() + 4 <= shaded,
-            "the pixel shader reads more attributes than the stage before it writes");
+    if (d.geometry_shader) {
+        GeometryProgram const& gs = *d.geometry_shader;
+        require(gs.input_floats() == shaded,
+                "the geometry shader's input vertex is not the output of the stage before it");
+        check_limit("geometry shader output scalars", gs.output().floats, 4 * kMaxRegisters);
+        check_limit("scalars that a geometry shader invocation may emit",
+                    gs.max_vertices() * gs.output().floats, kMaxGeometryScalars);
+        check_limit("geometry shader instances", gs.instances(), kMaxGeometryInstances);
+        check_limit("vertices of all geometry shader instances", gs.instances() * gs.max_vertices(),
+                    kMaxGeometryScalars);
+        if (d.hull_shader) {
+            auto const wanted =
+                d.output_primitive == OutputPrimitive::Point  ? PrimitiveTopology::PointList
+                : d.output_primitive == OutputPrimitive::Line ? PrimitiveTopology::LineList
+                                                              : PrimitiveTopology::TriangleList;
+            require(gs.input_topology() == wanted,
+                    "the geometry shader does not take what the tessellator puts out (R82)");
+        }
+        shaded = gs.output().floats;
+    }
+    if (d.stream_output) {
+        check_stream_output(*d.stream_output, shaded);
+        bool several = false;
+        for (StreamOutputEntry const& e : d.stream_output->entries) several |= e.stream > 0;
+        require(!several || (d.geometry_shader &&
+                             d.geometry_shader->output_topology() == GeometryOutput::PointList),
+                "more than one stream needs a geometry shader that puts out points (R86)");
+    }
+    if (d.pixel_shader) {
+        require(d.pixel_shader->input_floats() + 4 <= shaded,
+                "the pixel shader reads more attributes than the stage before it writes");
+        check_limit("colour targets of the pixel shader", d.pixel_shader->info().color_targets,
+                    int(kMaxRenderTargets));
+    }
 }
 
 } // namespace tessemu

@@ -1,23 +1,26 @@
 // The pipeline: stages bound together, checked against Direct3D 11's limits, and drawn with.
 //
-//     IA -> vertex cache -> VS -> HS -> tessellator -> DS -> (GS, SO) -> assembly -> raster -> PS
-//     -> OM
+//     IA -> vertex cache -> VS -> HS -> tessellator -> DS -> GS -> SO
+//                                                             -> assembly -> raster -> PS -> OM
 //
 // Results equal serial execution in submission order, whatever the number of threads (R1). A draw
-// streams patches in waves, so memory does not grow with the number of patches. Geometry shader,
-// stream output and compute shader have their places between the stages here and come later.
+// streams patches in waves, so memory does not grow with the number of patches.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "emu/domain_shader.h"
+#include "emu/geometry_shader.h"
 #include "emu/graphics_state.h"
 #include "emu/hull_shader.h"
 #include "emu/input_assembler.h"
 #include "emu/parallel.h"
 #include "emu/pixel_shader.h"
+#include "emu/stream_output.h"
 #include "emu/vertex_cache.h"
 #include "emu/vertex_shader.h"
+
+#include <optional>
 
 namespace tessemu {
 
@@ -26,7 +29,9 @@ struct GraphicsPipelineDesc {
     std::shared_ptr<VertexProgram const> vertex_shader;
     std::shared_ptr<HullProgram const> hull_shader;
     std::shared_ptr<DomainProgram const> domain_shader;
-    std::shared_ptr<PixelProgram const> pixel_shader; ///< none: depth only
+    std::shared_ptr<GeometryProgram const> geometry_shader;
+    std::optional<StreamOutputDesc> stream_output;
+    std::shared_ptr<PixelProgram const> pixel_shader; ///< none: depth and stencil only (R5)
     Partitioning partitioning = Partitioning::FractionalOdd;
     OutputPrimitive output_primitive = OutputPrimitive::TriangleCw;
     int input_control_points = 0; ///< of the patch topology that is drawn
@@ -41,13 +46,6 @@ public:
 
 private:
     GraphicsPipelineDesc desc_;
-};
-
-/// Where and how triangles are drawn.
-struct RasterTarget {
-    RenderTarget* target;
-    Viewport viewport;
-    RasterizerState rasterizer;
 };
 
 /// A tessellated patch as the domain shader left it.
@@ -65,12 +63,13 @@ using PatchVisitor = std::function<void(ShadedPatch const&)>;
 using DrawProgress = std::function<void(std::size_t, std::size_t)>;
 
 struct DrawOptions {
-    VertexCacheModel vertex_cache;
-    DrawProgress progress;
+    VertexCacheModel vertex_cache = {};
+    DrawProgress progress = {};
+    std::span<StreamOutputBuffer> stream_output = {}; ///< at most 4; `filled` moves on
 };
 
 /// Draws. Either part may be absent: without `raster` rasterization is off, without `visit` nobody
-/// looks at the patches.
+/// looks at the patches. Throws LimitError or Error for a call that does not fit the pipeline.
 DrawStatistics draw(GraphicsPipeline const& pipeline, DrawCall const& call,
                     RasterTarget const* raster, PatchVisitor const& visit,
                     ThreadPool const& threads, DrawOptions const& options = {});

@@ -4,6 +4,7 @@
 //
 //     struct S {
 //         static constexpr TessellatorDomain kDomain;
+//         static constexpr float kMaxTessFactor = ...;   // optional, at most 64
 //         template <class T> using Input = ...;          // record: an input control point
 //         template <class T> using ControlPoint = ...;   // record: an output control point
 //         template <class T> using PatchConstant = ...;  // record: at most 4 scalars, one register
@@ -62,6 +63,7 @@ public:
     virtual int control_point_floats() const = 0; ///< of one output control point
     virtual int patch_constants() const = 0;
     virtual int patch_constant_floats() const = 0;
+    virtual float max_tess_factor() const = 0; ///< [maxtessfactor], 64 where not declared (R53)
     virtual std::vector<ResourceInfo> resources() const = 0;
     virtual void run(HullBatch const& batch, StageCounters& counters,
                      StageBuffers const& buffers) const = 0;
@@ -84,6 +86,11 @@ public:
     int control_point_floats() const override { return int(kOut); }
     int patch_constants() const override { return shader_.patch_constants(); }
     int patch_constant_floats() const override { return int(kConst); }
+    float max_tess_factor() const override
+    {
+        if constexpr (requires { Shader::kMaxTessFactor; }) return Shader::kMaxTessFactor;
+        return tessemu::kMaxTessFactor;
+    }
     std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
 
     void run(HullBatch const& b, StageCounters& counters,

@@ -86,6 +86,7 @@ namespace detail {
 template <class T> void count_fetch(int slot, std::int32_t index, std::size_t size)
 {
     if constexpr (ScalarTraits<T>::kCounted) {
+        execution.features |= kFetches;
         if (!execution.buffers) return;
         FetchSlot& s = execution.buffers[slot];
         s.count += execution.active_lanes;
@@ -104,6 +105,7 @@ template <class T, int N>
 void count_fetch(int slot, IntLanes<N> index, std::size_t size, bool run = false)
 {
     if constexpr (ScalarTraits<T>::kCounted) {
+        execution.features |= kFetches;
         if (!execution.buffers) return;
         FetchSlot& s = execution.buffers[slot];
         s.count += execution.active_lanes;

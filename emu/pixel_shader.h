@@ -1,55 +1,119 @@
-// Pixel shader stage: one invocation per fragment that passes the early depth test, lanes across
-// fragments in submission order.
+// Pixel shader stage: one invocation per fragment, lanes across fragments in submission order.
 //
 // A pixel shader is
 //
 //     struct S {
 //         template <class T> using Input = ...;  // record: the first attributes after SV_Position
-//         that
-//                                                // the stage before wrote
-//         template <class T> float4<T> operator()(PixelInput<T> const&, Input<T> const&) const;
+//                                                // that the stage before wrote
+//         template <class T> Output operator()(PixelInput<T> const&, Input<T> const&) const;
 //     };
+//
+// Output is float4<T>, the colour o0, or a struct with any of
+//
+//     float4<T> color;  or  std::array<float4<T>, n> color;  // o0, or o0 to o(n-1)
+//     T depth;                                               // SV_Depth (R124)
+//     int_of<T> coverage;                                    // SV_Coverage, oMask (R118)
+//     mask_of<T> discard;                                    // pixels that leave no trace (R125)
+//
+// The input record may declare how its members are interpolated (R120), `static constexpr
+// std::array<Interpolation, members> kInterpolation`; linear otherwise. The shader may declare
+// `static constexpr bool kForceEarlyDepthStencil` (R131) and `kSampleFrequency` (R114).
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "emu/derivatives.h"
+#include "emu/graphics_state.h"
 #include "emu/machine.h"
 #include "emu/statistics.h"
+
+#include <algorithm>
+#include <bit>
 
 namespace tessemu {
 
 template <class T> struct PixelInput {
-    float4<T> position;     ///< SV_Position: pixel centre, depth, w (R121)
+    float4<T> position; ///< SV_Position: pixel centre or sample, unclamped depth, w (R121, R122)
     int_of<T> primitive_id; ///< SV_PrimitiveID
     mask_of<T> front_face;  ///< SV_IsFrontFace
+    int_of<T> sample_index; ///< SV_SampleIndex at sample frequency, 0 otherwise
+    int_of<T> coverage;     ///< SV_Coverage: covered samples after the mask (R119)
 };
 
-/// Fragments of one tile, arrays per component.
+/// What a compiled pixel shader tells the pipeline.
+struct PixelShaderInfo {
+    std::vector<Interpolation> interpolation; ///< one per input scalar
+    int color_targets = 0;
+    bool writes_depth = false, writes_coverage = false, discards = false;
+    bool force_early = false, sample_frequency = false;
+    std::uint32_t features = 0; ///< ShaderFeature bits
+    FlopCount flops; ///< of one invocation, where features has neither branches nor fetches
+};
+
+/// Fragments, arrays per component; whole groups of 16 may be read and written.
 struct FragmentBatch {
     std::size_t count;
     float const* position[4];
     float const* const* attributes; ///< component k at attributes[k]
     std::int32_t const* primitive_id;
     std::int32_t const* front_face; ///< 0 or -1
-    float* color[4];                ///< out; whole groups are written
+    std::int32_t const* sample_index;
+    std::int32_t const* coverage;
+    std::int32_t const* live; ///< 0: a helper, run for its quad and counted nowhere; null: all live
+    float* const* color;      ///< out: component k of o(i) at color[4 * i + k]
+    float* depth;             ///< out, where the shader writes it
+    std::int32_t* out_coverage;
+    std::int32_t* discard; ///< out: -1 where discarded
 };
 
 class PixelProgram {
 public:
     virtual ~PixelProgram() = default;
-    virtual int input_floats() const = 0;
+    PixelShaderInfo const& info() const { return info_; }
+    int input_floats() const { return int(info_.interpolation.size()); }
     virtual std::vector<ResourceInfo> resources() const = 0;
     virtual void run(FragmentBatch const& batch, StageCounters& counters,
                      StageBuffers const& buffers) const = 0;
+
+protected:
+    PixelShaderInfo info_;
 };
 
 template <class Shader, class T> class PixelProgramOn final : public PixelProgram {
     static constexpr int N = lanes_of<T>;
     using Input = typename Shader::template Input<T>;
+    using Output = std::remove_cvref_t<decltype(std::declval<Shader const&>()(
+        std::declval<PixelInput<T> const&>(), std::declval<Input const&>()))>;
+    static constexpr bool kDepth = requires(Output o) { o.depth; };
+    static constexpr bool kCoverage = requires(Output o) { o.coverage; };
+    static constexpr bool kDiscard = requires(Output o) { o.discard; };
+
+    template <class F> static void for_each_color(Output const& o, F&& f)
+    {
+        if constexpr (std::same_as<Output, float4<T>>)
+            f(o);
+        else if constexpr (requires { o.color.w; })
+            f(o.color);
+        else if constexpr (requires { o.color; })
+            for (float4<T> const& c : o.color) f(c);
+    }
 
 public:
-    PixelProgramOn(Shader const& shader, std::uint64_t seed) : shader_(shader), seed_(seed) {}
-    int input_floats() const override { return scalar_count<Input>(); }
+    PixelProgramOn(Shader const& shader, std::uint64_t seed) : shader_(shader), seed_(seed)
+    {
+        describe_inputs();
+        info_.writes_depth = kDepth;
+        info_.writes_coverage = kCoverage;
+        info_.discards = kDiscard;
+        if constexpr (requires { Shader::kForceEarlyDepthStencil; })
+            info_.force_early = Shader::kForceEarlyDepthStencil;
+        if constexpr (requires { Shader::kSampleFrequency; })
+            info_.sample_frequency = Shader::kSampleFrequency;
+        for (Interpolation i : info_.interpolation)
+            if (i == Interpolation::LinearSample || i == Interpolation::LinearNoperspectiveSample)
+                info_.sample_frequency = true; // R114
+        probe();
+    }
     std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
 
     void run(FragmentBatch const& b, StageCounters& counters,
@@ -57,8 +121,9 @@ public:
     {
         StageScope const scope(counters, buffers, seed_);
         for (std::size_t first = 0; first < b.count; first += N) {
-            std::size_t const left = b.count - first;
-            execution.activate(left >= std::size_t(N) ? (1u << N) - 1 : (1u << left) - 1);
+            std::uint32_t const active = active_lanes(b, first);
+            if (active == 0) continue; // helpers only
+            execution.activate(active);
             site_state.scope = site_state.next = 0;
             auto const lanes = [&](float const* p) { return T(Lanes<N>::load(p + first)); };
             PixelInput<T> pixel;
@@ -66,18 +131,78 @@ public:
                               lanes(b.position[3])};
             __builtin_memcpy(&pixel.primitive_id.raw, b.primitive_id + first, 4 * N);
             __builtin_memcpy(&pixel.front_face.raw, b.front_face + first, 4 * N);
+            __builtin_memcpy(&pixel.sample_index.raw, b.sample_index + first, 4 * N);
+            __builtin_memcpy(&pixel.coverage.raw, b.coverage + first, 4 * N);
             Input input{};
             int k = 0;
             for_each_scalar(input, [&](auto& s) { s = lanes(b.attributes[k++]); });
-            float4<T> const color = shader_(pixel, input);
+            Output const out = shader_(pixel, input);
             k = 0;
-            for_each_scalar(color,
-                            [&](auto const& s) { lanes_value(s).store(b.color[k++] + first); });
+            for_each_color(out, [&](float4<T> const& color) {
+                for_each_scalar(color,
+                                [&](auto const& s) { lanes_value(s).store(b.color[k++] + first); });
+            });
+            if constexpr (kDepth) lanes_value(out.depth).store(b.depth + first);
+            if constexpr (kCoverage)
+                __builtin_memcpy(b.out_coverage + first, &out.coverage.raw, 4 * N);
+            if constexpr (kDiscard) __builtin_memcpy(b.discard + first, &out.discard.raw, 4 * N);
+            counters.invocations += std::uint64_t(std::popcount(active));
         }
-        counters.invocations += b.count;
     }
 
 private:
+    static std::uint32_t active_lanes(FragmentBatch const& b, std::size_t first)
+    {
+        std::size_t const left = b.count - first;
+        std::uint32_t const all = left >= std::size_t(N) ? (1u << N) - 1 : (1u << left) - 1;
+        if (!b.live) return all;
+        Mask<N> live;
+        __builtin_memcpy(&live.raw, b.live + first, 4 * N);
+        return live.bits() & all;
+    }
+
+    void describe_inputs()
+    {
+        if constexpr (requires { Input::kInterpolation; }) {
+            std::size_t member = 0;
+            std::apply(
+                [&](auto... m) {
+                    ((info_.interpolation.insert(
+                         info_.interpolation.end(),
+                         std::size_t(scalar_count<
+                                     std::remove_cvref_t<decltype(std::declval<Input&>().*m)>>()),
+                         Input::kInterpolation[member++])),
+                     ...);
+                },
+                Input::signature());
+        } else {
+            info_.interpolation.assign(std::size_t(scalar_count<Input>()), Interpolation::Linear);
+        }
+    }
+
+    // One run on zeros tells what the shader does: its control flow cannot depend on lanes.
+    void probe()
+    {
+        Execution const saved = execution;
+        SiteState const saved_sites = site_state;
+        execution = Execution{};
+        site_state = SiteState{seed_, 0, 0};
+        PixelInput<T> pixel{};
+        Input input{};
+        auto const zero = [](auto& s) { s = std::remove_cvref_t<decltype(s)>(0.0f); };
+        for_each_scalar(pixel.position, zero);
+        for_each_scalar(input, zero);
+        pixel.primitive_id = pixel.sample_index = pixel.coverage = IntLanes<N>(0);
+        pixel.front_face = Mask<N>(false);
+        int colors = 0;
+        for_each_color(shader_(pixel, input), [&](float4<T> const&) { ++colors; });
+        info_.color_targets = colors;
+        info_.features = execution.features;
+        info_.flops = execution.take();
+        execution = saved;
+        site_state = saved_sites;
+    }
+
     Shader shader_;
     std::uint64_t seed_;
 };

@@ -1,15 +1,18 @@
-// Primitive assembly: clip test, clipping, perspective divide, viewport, snapping to 16.8.
+// Primitive assembly: cull distances, clip test, clipping, perspective divide, viewport, snapping
+// to 16.8, face culling, depth bias (rules R90 to R110).
 //
 // Near and far planes are clipped exactly; x and y only against a guard band (choice I-12), pixels
-// outside the viewport are the scissor's business. A triangle with NaN or infinity is dropped (R94,
-// I-13).
+// outside the viewport are the scissor's business. A primitive with NaN or infinity is dropped
+// (R94, I-13).
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "emu/graphics_state.h"
+#include "emu/record.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace tessemu {
@@ -33,20 +36,21 @@ struct AssembledVertices {
     }
 };
 
-/// A triangle ready for the rasterizer: clockwise on the screen, area above 0.
-struct AssembledTriangle {
+/// A point, line or triangle ready for the rasterizer; a triangle is clockwise on the screen and
+/// its area is above 0.
+struct AssembledPrimitive {
     std::uint32_t v[3];
+    std::uint32_t leading; ///< vertex whose bits constant attributes take
     std::int32_t primitive_id;
+    float depth_bias;      ///< added to the vertices' z
+    std::uint8_t vertices; ///< 1, 2, 3
     bool front_face;
+    std::uint8_t viewport; ///< index, in range
 };
 
 struct AssemblyCounters {
     std::uint64_t clip_invocations = 0, clip_primitives = 0;
 };
-
-/// Projects `count` shaded vertices. One division a vertex.
-void project_vertices(Viewport const& viewport, float const* shaded, std::size_t stride,
-                      std::size_t count, int components, AssembledVertices& out);
 
 /// Clip planes that a vertex lies outside of. The guard bit is set where a vertex leaves the band
 /// in which 16.8 coordinates are exact.
@@ -58,7 +62,16 @@ enum Outcode : std::uint8_t {
     kNear = 16,
     kFar = 32,
     kGuard = 64,  ///< beyond the guard band, or w <= 0: needs clipping
-    kBroken = 128 ///< NaN or infinity: the triangle is dropped
+    kBroken = 128 ///< NaN or infinity: the primitive is dropped
+};
+inline constexpr unsigned kViewPlanes = kLeft | kRight | kBottom | kTop | kNear | kFar;
+
+/// Viewport scale and offset, and the guard band in pixels.
+struct ViewportTransform {
+    float scale_x, offset_x, scale_y, offset_y, scale_z, offset_z;
+    float band_left, band_right, band_top, band_bottom;
+
+    ViewportTransform(Viewport const& v, float guard_band_px);
 };
 
 /// Pixels whose centre lies in the bounding box of a snapped triangle. On the right and bottom side
@@ -70,45 +83,47 @@ inline Rect pixel_bounds(std::int32_t const (&x)[3], std::int32_t const (&y)[3])
             ((std::max({y[0], y[1], y[2]}) - 129) >> 8) + 1};
 }
 
-/// Culls a projected triangle and appends it unless it can cover no pixel.
-inline void emit_triangle(RasterizerState const& state, AssembledVertices const& vertices,
-                          std::uint32_t a, std::uint32_t b, std::uint32_t c,
-                          std::int32_t primitive_id, std::vector<AssembledTriangle>& out)
-{
-    std::int32_t const x[3] = {vertices.x[a], vertices.x[b], vertices.x[c]};
-    std::int32_t const y[3] = {vertices.y[a], vertices.y[b], vertices.y[c]};
-    if (pixel_bounds(x, y).empty()) return;
-    std::int64_t const area =
-        std::int64_t(x[1] - x[0]) * (y[2] - y[0]) - std::int64_t(x[2] - x[0]) * (y[1] - y[0]);
-    if (area == 0) return; // covers nothing (R104)
-    bool const clockwise = area > 0;
-    bool const front = clockwise != state.front_counter_clockwise;
-    if (state.cull == (front ? CullMode::Front : CullMode::Back)) return;
-    out.push_back({{a, clockwise ? b : c, clockwise ? c : b}, primitive_id, front});
-}
+class PrimitiveAssembler {
+public:
+    /// \param modes        of the attributes after SV_Position
+    /// \param layout       of the vertices
+    PrimitiveAssembler(RasterTarget const& target, std::span<Interpolation const> modes,
+                       OutputLayout layout);
 
-/// Clips a triangle that leaves the clip volume or the guard band, appends what is left (at most
-/// 7).
-void clip_triangle(RasterizerState const& state, Viewport const& viewport,
-                   AssembledVertices& vertices, std::uint32_t a, std::uint32_t b, std::uint32_t c,
-                   std::int32_t primitive_id, AssemblyCounters& counters,
-                   std::vector<AssembledTriangle>& out);
+    /// Projects `count` shaded vertices, a multiple of 16. One division a vertex.
+    /// \param viewports  index per vertex, or nothing: all take viewport 0
+    void project(float const* shaded, std::size_t stride, std::size_t count,
+                 std::span<std::uint8_t const> viewports, AssembledVertices& out) const;
 
-/// Assembles one triangle of vertices a, b, c.
-inline void assemble_triangle(RasterizerState const& state, Viewport const& viewport,
-                              AssembledVertices& vertices, std::uint32_t a, std::uint32_t b,
-                              std::uint32_t c, std::int32_t primitive_id,
-                              AssemblyCounters& counters, std::vector<AssembledTriangle>& out)
-{
-    constexpr unsigned kView = kLeft | kRight | kBottom | kTop | kNear | kFar;
-    unsigned const ca = vertices.outcode[a], cb = vertices.outcode[b], cc = vertices.outcode[c];
-    unsigned const some = ca | cb | cc;
-    ++counters.clip_invocations;
-    if ((some & kBroken) || (ca & cb & cc & kView)) return; // or wholly outside one plane
-    if (some & (kNear | kFar | kGuard))
-        return clip_triangle(state, viewport, vertices, a, b, c, primitive_id, counters, out);
-    ++counters.clip_primitives;
-    emit_triangle(state, vertices, a, b, c, primitive_id, out);
-}
+    /// Appends what is left of a primitive of `n` vertices.
+    void assemble(AssembledVertices& vertices, std::uint32_t const* v, int n,
+                  std::int32_t primitive_id, std::uint8_t viewport, AssemblyCounters& counters,
+                  std::vector<AssembledPrimitive>& out) const;
+
+    bool front_is_clockwise() const { return !state_.front_counter_clockwise; }
+    RasterizerState const& state() const { return state_; }
+
+private:
+    struct ClipVertex;
+    bool culled_by_distance(AssembledVertices const& vertices, std::uint32_t const* v, int n) const;
+    float plane_distance(ClipVertex const& v, int plane, ViewportTransform const& t) const;
+    void cut(ClipVertex const& in, ClipVertex const& out, float t, std::uint32_t leading,
+             AssembledVertices const& vertices, ClipVertex& result) const;
+    std::uint32_t append(ClipVertex const& v, ViewportTransform const& t,
+                         AssembledVertices& vertices) const;
+    void clip(AssembledVertices& vertices, AssembledPrimitive const& primitive,
+              AssemblyCounters& counters, std::vector<AssembledPrimitive>& out) const;
+    void emit(AssembledVertices const& vertices, AssembledPrimitive primitive, unsigned edges,
+              std::vector<AssembledPrimitive>& out) const;
+    float depth_bias(AssembledVertices const& vertices, AssembledPrimitive const& p,
+                     std::int64_t area) const;
+
+    RasterizerState const& state_;
+    std::vector<ViewportTransform> transforms_;
+    std::vector<Interpolation> modes_;
+    OutputLayout layout_;
+    bool has_bias_;
+    int unorm_depth_bits_; ///< 0: a float depth buffer
+};
 
 } // namespace tessemu

@@ -193,6 +193,20 @@ template <class P> constexpr int scalar_count()
     }
 }
 
+/// What a geometry stage writes: scalars, and how many of the last ones are SV_ClipDistance and
+/// then SV_CullDistance. A record declares them as `static constexpr int kClipDistances,
+/// kCullDistances`.
+struct OutputLayout {
+    int floats = 0, clip_distances = 0, cull_distances = 0;
+};
+template <class P> constexpr OutputLayout output_layout()
+{
+    OutputLayout l{scalar_count<P>(), 0, 0};
+    if constexpr (requires { P::kClipDistances; }) l.clip_distances = P::kClipDistances;
+    if constexpr (requires { P::kCullDistances; }) l.cull_distances = P::kCullDistances;
+    return l;
+}
+
 /// Record from memory: every invocation reads the same one.
 template <class P, class S> constexpr P load_record(S const* memory)
 {

@@ -56,6 +56,12 @@ StageStatistics& StageStatistics::operator+=(StageStatistics const& o)
 DrawStatistics& DrawStatistics::operator+=(DrawStatistics const& o)
 {
     pipeline += o.pipeline;
+    samples_passed += o.samples_passed;
+    tess_factors_above_max += o.tess_factors_above_max;
+    for (std::size_t i = 0; i < stream_output.size(); ++i) {
+        stream_output[i].NumPrimitivesWritten += o.stream_output[i].NumPrimitivesWritten;
+        stream_output[i].PrimitiveStorageNeeded += o.stream_output[i].PrimitiveStorageNeeded;
+    }
     if (stages.empty()) {
         stages = o.stages;
         return *this;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "emu/memory.h"
+#include "emu/stream_output.h"
 
 namespace tessemu {
 
@@ -16,7 +17,8 @@ struct PipelineStatistics {
     std::uint64_t DSInvocations = 0; ///< once per domain point (I-2)
     std::uint64_t GSInvocations = 0, GSPrimitives = 0;
     std::uint64_t CInvocations = 0, CPrimitives = 0;
-    std::uint64_t PSInvocations = 0; ///< fragments that pass the early depth test (I-16)
+    /// Live pixels or samples that were shaded: those that pass where the test comes first (I-16).
+    std::uint64_t PSInvocations = 0;
     std::uint64_t CSInvocations = 0;
     std::uint64_t HSControlPointInvocations = 0;  ///< patches times output control points
     std::uint64_t HSPatchConstantInvocations = 0; ///< patches times (fork instances + join)
@@ -37,11 +39,15 @@ struct StageStatistics {
     friend bool operator==(StageStatistics const&, StageStatistics const&) = default;
 };
 
-/// Stages in pipeline order: input_assembler, vertex_shader, hull_shader, tessellator,
-/// domain_shader, rasterizer, pixel_shader, output_merger.
+/// Stages in pipeline order, those that ran: input_assembler, vertex_shader, hull_shader,
+/// tessellator, domain_shader, geometry_shader, stream_output, rasterizer, pixel_shader,
+/// output_merger; compute_shader of a dispatch.
 struct DrawStatistics {
     PipelineStatistics pipeline;
     std::vector<StageStatistics> stages;
+    std::uint64_t samples_passed = 0; ///< D3D11_QUERY_OCCLUSION (R165)
+    std::array<StreamOutputStatistics, 4> stream_output{};
+    std::uint64_t tess_factors_above_max = 0; ///< clamped to the hull shader's maximum (I-28)
 
     DrawStatistics& operator+=(DrawStatistics const& o);
     friend bool operator==(DrawStatistics const&, DrawStatistics const&) = default;

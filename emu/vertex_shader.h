@@ -4,15 +4,15 @@
 //
 //     struct S {
 //         template <class T> using Input = ...;   // record, as the vertex buffer holds it
-//         template <class T> using Output = ...;  // record; without a hull shader its first member
-//         is
-//                                                 // float4<T> position (SV_Position)
+//         template <class T> using Output = ...;  // record; without a hull or geometry shader its
+//                                                 // first member is float4<T> position
 //         template <class T> Output<T> operator()(VertexInput<T>, Input<T> const&) const;
 //     };
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "emu/input_assembler.h"
 #include "emu/machine.h"
 #include "emu/statistics.h"
 
@@ -21,20 +21,28 @@
 namespace tessemu {
 
 template <class T> struct VertexInput {
-    int_of<T> vertex_id; ///< SV_VertexID (R34)
+    int_of<T> vertex_id; ///< SV_VertexID: the index, or the number in a draw without indices (R34)
+    std::int32_t instance_id = 0; ///< SV_InstanceID, from 0 in every draw
+};
+
+/// Vertices of one instance to run.
+struct VertexBatch {
+    std::span<std::uint32_t const> ids; ///< where outputs go
+    DrawCall const& call;
+    AssembledPrimitives const& primitives; ///< tells the index of an id
+    std::uint32_t instance;
 };
 
 class VertexProgram {
 public:
     virtual ~VertexProgram() = default;
     virtual int input_floats() const = 0;
-    virtual int output_floats() const = 0;
+    int output_floats() const { return output().floats; }
     virtual std::vector<ResourceInfo> resources() const = 0;
-    /// Runs `ids`, reading `vertices[id * input_floats]` (zeros past the end, R35), writing
-    /// `outputs[id * output_floats]`. Without `outputs` the runs are counted and their results
-    /// dropped.
-    virtual void run(std::span<std::uint32_t const> ids, std::span<float const> vertices,
-                     float* outputs, StageCounters& counters,
+    virtual OutputLayout output() const = 0;
+    /// Runs a batch, writing `outputs[id * output_floats]`. Without `outputs` the runs are counted
+    /// and their results dropped.
+    virtual void run(VertexBatch const& batch, float* outputs, StageCounters& counters,
                      StageBuffers const& buffers) const = 0;
 };
 
@@ -46,32 +54,37 @@ template <class Shader, class T> class VertexProgramOn final : public VertexProg
 public:
     VertexProgramOn(Shader const& shader, std::uint64_t seed) : shader_(shader), seed_(seed) {}
     int input_floats() const override { return scalar_count<Input>(); }
-    int output_floats() const override { return scalar_count<Output>(); }
+    OutputLayout output() const override { return output_layout<Output>(); }
     std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
 
-    void run(std::span<std::uint32_t const> ids, std::span<float const> vertices, float* outputs,
-             StageCounters& counters, StageBuffers const& buffers) const override
+    void run(VertexBatch const& batch, float* outputs, StageCounters& counters,
+             StageBuffers const& buffers) const override
     {
+        std::span<std::uint32_t const> const ids = batch.ids;
         StageScope const scope(counters, buffers, seed_);
         constexpr std::size_t in = scalar_count<Input>(), out = scalar_count<Output>();
         for (std::size_t first = 0; first < ids.size(); first += N) {
             int const active = int(std::min<std::size_t>(N, ids.size() - first));
             execution.activate((1u << active) - 1);
-            IntLanes<N> id(0);
-            for (int l = 0; l < active; ++l) id.raw[l] = std::int32_t(ids[first + std::size_t(l)]);
+            IntLanes<N> id(0), index(0);
+            float fetched[N][in + 1] = {};
+            for (int l = 0; l < active; ++l) {
+                std::uint32_t const v = ids[first + std::size_t(l)];
+                id.raw[l] = std::int32_t(v);
+                index.raw[l] = std::int32_t(batch.primitives.index(v));
+                fetch_vertex(batch.call, batch.primitives.index(v), batch.instance, fetched[l]);
+            }
             Input input{};
             std::size_t k = 0;
             for_each_scalar(input, [&](auto& s) {
                 Lanes<N> v(0.0f);
-                for (int l = 0; l < active; ++l) {
-                    std::size_t const at = std::uint32_t(id.raw[l]) * in + k;
-                    if (at < vertices.size()) v.raw[l] = vertices[at];
-                }
+                for (int l = 0; l < active; ++l) v.raw[l] = fetched[l][k];
                 s = T(v);
                 ++k;
             });
             site_state.scope = site_state.next = 0;
-            Output const output = shader_(VertexInput<T>{id}, input);
+            Output const output =
+                shader_(VertexInput<T>{index, std::int32_t(batch.instance)}, input);
             if (!outputs) continue;
             k = 0;
             for_each_scalar(output, [&](auto const& s) {

@@ -38,7 +38,7 @@ int main()
     desc.input_control_points = 4;
 
     DrawCall call;
-    call.vertices = corners;
+    call.set_vertices(corners, 3);
     call.vertex_count = 4;
 
     auto const print = [](ShadedPatch const& p) {

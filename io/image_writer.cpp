@@ -7,16 +7,6 @@
 
 namespace tessemu {
 
-namespace {
-// R21: NaN gives 0; clamp; truncate c * 255 + 0.5.
-std::uint8_t to_unorm8(float c)
-{
-    if (!(c > 0)) return 0;
-    if (c >= 1) return 255;
-    return std::uint8_t(c * 255.0f + 0.5f);
-}
-} // namespace
-
 void check_image_path(std::filesystem::path const& path)
 {
     auto const extension = path.extension();
@@ -25,7 +15,7 @@ void check_image_path(std::filesystem::path const& path)
                          "', images are .png or .exr");
 }
 
-void write_image(RenderTarget const& target, std::filesystem::path const& path)
+void write_image(ColorTarget const& target, std::filesystem::path const& path)
 {
     check_image_path(path);
     bool const png = path.extension() == ".png";
@@ -37,16 +27,18 @@ void write_image(RenderTarget const& target, std::filesystem::path const& path)
         if (!file || !file->open(temporary.string(), spec))
             throw WriteError(path.string() + ": " + (file ? file->geterror() : OIIO::geterror()));
         bool good = true;
-        std::vector<std::uint8_t> row(width * 4);
+        std::vector<std::uint8_t> bytes(width * 4);
+        std::vector<float> floats(width * 4);
         for (int y = 0; y < target.height() && good; ++y) {
-            std::array<float, 4> const* const pixels = target.color_row(y);
-            if (png) {
-                for (std::size_t i = 0; i < row.size(); ++i)
-                    row[i] = to_unorm8(pixels[i / 4][i % 4]);
-                good = file->write_scanline(y, 0, OIIO::TypeDesc::UINT8, row.data());
-            } else {
-                good = file->write_scanline(y, 0, OIIO::TypeDesc::FLOAT, pixels);
+            for (std::size_t x = 0; x < width; ++x) {
+                auto const c = target.load(int(x), y);
+                for (std::size_t k = 0; k < 4; ++k) {
+                    floats[4 * x + k] = c[k];
+                    bytes[4 * x + k] = std::uint8_t(unorm_from_float(c[k], 8));
+                }
             }
+            good = png ? file->write_scanline(y, 0, OIIO::TypeDesc::UINT8, bytes.data())
+                       : file->write_scanline(y, 0, OIIO::TypeDesc::FLOAT, floats.data());
         }
         good = file->close() && good;
         if (!good) throw WriteError(path.string() + ": " + file->geterror());

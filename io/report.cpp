@@ -120,16 +120,14 @@ Json pairs(std::vector<std::pair<std::size_t, std::size_t>> const& entries)
 } // namespace
 
 std::string draw_report(ReportHeader const& header, DrawStatistics const& statistics,
-                        RenderTarget const& target)
+                        ColorTarget const& color, DepthTarget const& depth)
 {
     Json j = start(header);
     add_statistics(j, statistics);
     return finish(std::move(j), header, [&](Sha256& hash) {
-        auto const width = std::size_t(target.width());
-        for (int y = 0; y < target.height(); ++y)
-            hash.add(target.color_row(y), width * 4 * sizeof(float));
-        for (int y = 0; y < target.height(); ++y)
-            hash.add(target.depth_row(y), width * sizeof(float));
+        std::size_t const pixels = std::size_t(color.width()) * std::size_t(color.height());
+        hash.add(color.texel(0, 0), pixels * std::size_t(color.samples()) * color.texel_bytes());
+        hash.add(depth.codes(), pixels * std::size_t(depth.samples()) * sizeof(std::uint32_t));
     });
 }
 

@@ -32,9 +32,9 @@ struct ReportHeader {
 };
 
 /// draw: counters and stages; "hash" covers the report without tool, run and hash, then the colour
-/// and the depth target, rows from the top.
+/// and the depth target, rows from the top, all samples of each.
 std::string draw_report(ReportHeader const& header, DrawStatistics const& statistics,
-                        RenderTarget const& target);
+                        ColorTarget const& color, DepthTarget const& depth);
 
 /// export: the same with the mesh instead of the target.
 std::string export_report(ReportHeader const& header, DrawStatistics const& statistics,

@@ -16,8 +16,12 @@ std::string_view name_of(View view)
         return "normals";
     case View::Patches:
         return "patches";
-    default:
+    case View::Depth:
         return "depth";
+    case View::Wire:
+        return "wire";
+    default:
+        return "coverage";
     }
 }
 
@@ -36,7 +40,9 @@ std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
     glm::vec3 const light = glm::normalize(-0.5f * camera.right() + 0.62f * camera.true_up() +
                                            0.6f * camera.backward());
     switch (view) {
-    case View::Lit: {
+    case View::Lit:
+    case View::Wire:
+    case View::Coverage: {
         LitPixelShader s;
         s.light = array(light);
         s.half = array(glm::normalize(light + camera.backward()));
@@ -76,28 +82,91 @@ PassSettings pass_settings(FrameSettings const& s)
 }
 } // namespace
 
-Frame draw_frame(PatchMesh const& mesh, FrameSettings const& s, ThreadPool const& threads,
+Frame::Frame(FrameSettings const& s)
+    : color(s.width, s.height, s.color_format),
+      depth(s.width, s.height, Format::D32_FLOAT, s.samples)
+{
+    if (s.samples > 1)
+        color_samples = std::make_unique<ColorTarget>(s.width, s.height, s.color_format, s.samples);
+    if (s.view == View::Coverage)
+        coverage = std::make_unique<CoverageCounts>(s.width, s.height, s.samples);
+}
+
+namespace {
+
+// Draws all passes with one rasterizer state.
+void draw_passes(PatchMesh const& mesh, FrameSettings const& s, RasterTarget const& raster,
+                 PassSettings const& settings, ThreadPool const& threads, Frame& frame,
                  DrawProgress const& progress)
 {
-    Frame frame{RenderTarget(s.width, s.height, s.background), {}};
-    PassSettings settings = pass_settings(s);
-    settings.view_projection = view_projection(s.camera, float(s.width) / float(s.height));
-    settings.pixel_shader = [&](PatchKind const& kind) {
-        return make_view(s.view, kind, s.camera, s.machine);
-    };
-    RasterTarget raster{&frame.target, {0, 0, float(s.width), float(s.height), 0, 1}, {}};
-    raster.rasterizer.cull = s.cull;
-    raster.rasterizer.front_counter_clockwise = true; // as the papers' meshes
     std::vector<DrawPass> const passes = mesh.passes(settings);
     std::size_t all = 0, done = 0;
     for (DrawPass const& pass : passes) all += pass.patches.size();
     for (DrawPass const& pass : passes) {
-        DrawOptions options{s.vertex_cache, {}};
+        DrawOptions options;
+        options.vertex_cache = s.vertex_cache;
         if (progress)
             options.progress = [&](std::size_t n, std::size_t) { progress(done + n, all); };
         frame.statistics += draw(pass.pipeline, pass.call, &raster, {}, threads, options);
         done += pass.patches.size();
     }
+}
+
+void paint_coverage(FrameSettings const& s, Frame& frame)
+{
+    for (int y = 0; y < s.height; ++y)
+        for (int x = 0; x < s.width; ++x) {
+            std::uint32_t const n = frame.coverage->at(x, y, 0);
+            float const t = float(std::min(n, 8u)) / 8;
+            std::array<float, 4> const color =
+                n == 0       ? s.background
+                : n % 2 == 1 ? std::array<float, 4>{0.95f, 0.45f - 0.25f * t, 0.1f, 1}
+                             : std::array<float, 4>{0.15f + 0.8f * t, 0.35f + 0.6f * t, 0.8f, 1};
+            encode(frame.color.format(), color, frame.color.texel(x, y));
+        }
+}
+
+} // namespace
+
+void draw_frame(PatchMesh const& mesh, FrameSettings const& s, ThreadPool const& threads,
+                Frame& frame, DrawProgress const& progress)
+{
+    ColorTarget& color = frame.color_samples ? *frame.color_samples : frame.color;
+    color.clear(s.background, threads);
+    frame.depth.clear(1, 0, threads);
+    frame.statistics = {};
+    PassSettings settings = pass_settings(s);
+    settings.view_projection = view_projection(s.camera, float(s.width) / float(s.height));
+    settings.pixel_shader = [&](PatchKind const& kind) {
+        return make_view(s.view, kind, s.camera, s.machine);
+    };
+    RasterTarget raster{{&color}, &frame.depth, {{0, 0, float(s.width), float(s.height), 0, 1}}};
+    raster.rasterizer.cull = s.cull;
+    raster.rasterizer.front_counter_clockwise = true; // as the papers' meshes
+    if (frame.coverage) {
+        std::fill(frame.coverage->count.begin(), frame.coverage->count.end(), 0u);
+        raster.coverage = frame.coverage.get();
+    }
+    draw_passes(mesh, s, raster, settings, threads, frame, progress);
+    if (s.view == View::Wire) {
+        settings.pixel_shader = [&](PatchKind const&) {
+            return make_pixel_program(FlatPixelShader{{0.05f, 0.06f, 0.08f, 1}}, s.machine);
+        };
+        raster.rasterizer.fill = FillMode::Wireframe;
+        raster.rasterizer.multisample_enable = s.samples > 1;
+        raster.rasterizer.slope_scaled_depth_bias = -1; // edges lie on the surface's own triangles
+        raster.rasterizer.depth_bias = -64;
+        draw_passes(mesh, s, raster, settings, threads, frame, progress);
+    }
+    if (frame.color_samples) resolve(*frame.color_samples, frame.color);
+    if (frame.coverage) paint_coverage(s, frame);
+}
+
+Frame draw_frame(PatchMesh const& mesh, FrameSettings const& s, ThreadPool const& threads,
+                 DrawProgress const& progress)
+{
+    Frame frame(s);
+    draw_frame(mesh, s, threads, frame, progress);
     return frame;
 }
 
@@ -108,8 +177,9 @@ DrawStatistics visit_surface(PatchMesh const& mesh, FrameSettings const& s,
     for (DrawPass const& pass : mesh.passes(pass_settings(s))) {
         PatchVisitor visitor;
         if (visit) visitor = [&](ShadedPatch const& p) { visit(pass, p); };
-        statistics +=
-            draw(pass.pipeline, pass.call, nullptr, visitor, threads, {s.vertex_cache, {}});
+        DrawOptions options;
+        options.vertex_cache = s.vertex_cache;
+        statistics += draw(pass.pipeline, pass.call, nullptr, visitor, threads, options);
     }
     return statistics;
 }

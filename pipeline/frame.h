@@ -10,10 +10,11 @@
 
 namespace tessemu {
 
-enum class View { Lit, Normals, Patches, Depth };
+enum class View { Lit, Normals, Patches, Depth, Wire, Coverage };
 std::string_view name_of(View view);
 std::optional<View> view_from_name(std::string_view name);
-inline constexpr View kViews[] = {View::Lit, View::Normals, View::Patches, View::Depth};
+inline constexpr View kViews[] = {View::Lit,   View::Normals, View::Patches,
+                                  View::Depth, View::Wire,    View::Coverage};
 
 /// The pixel shader of a view.
 std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
@@ -25,6 +26,8 @@ struct FrameSettings {
     View view = View::Lit;
     std::array<float, 4> background{0.93f, 0.94f, 0.96f, 1.0f};
     CullMode cull = CullMode::None; ///< open surfaces show their inside
+    int samples = 1;                ///< 1, 2, 4 or 8
+    Format color_format = Format::R8G8B8A8_UNORM;
     float tess_factor = 1;
     Partitioning partitioning = Partitioning::FractionalOdd;
     bool true_normals = false;
@@ -32,12 +35,25 @@ struct FrameSettings {
     VertexCacheModel vertex_cache;
 };
 
+/// A picture and what it took. Its memory serves frame after frame.
 struct Frame {
-    RenderTarget target;
+    ColorTarget color; ///< resolved where there are several samples
+    DepthTarget depth; ///< every sample
     DrawStatistics statistics;
+    std::unique_ptr<ColorTarget> color_samples; ///< what is drawn to with several samples
+    std::unique_ptr<CoverageCounts> coverage;   ///< of the coverage view
+
+    /// Throws LimitError for targets that are too large.
+    explicit Frame(FrameSettings const& settings);
 };
 
-/// Draws all passes in order. Throws LimitError for a target that is too large.
+/// Clears the frame and draws all passes in order. The frame was made for the same size, format and
+/// samples. The wire view draws the surface first and then its edges over it, and counts both; the
+/// coverage view paints how often a pixel's first sample was covered: grey not at all, blue to
+/// white an even number of times, orange an odd number.
+void draw_frame(PatchMesh const& mesh, FrameSettings const& settings, ThreadPool const& threads,
+                Frame& frame, DrawProgress const& progress = {});
+/// The same in a frame of its own.
 Frame draw_frame(PatchMesh const& mesh, FrameSettings const& settings, ThreadPool const& threads,
                  DrawProgress const& progress = {});
 

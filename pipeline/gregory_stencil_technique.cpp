@@ -88,8 +88,7 @@ public:
 
             DrawCall call;
             call.control_points = g.inputs;
-            call.vertices = {&mesh_.positions.data()->x, mesh_.positions.size() * 3};
-            call.vertex_floats = 3;
+            call.set_vertices({&mesh_.positions.data()->x, mesh_.positions.size() * 3}, 3);
             call.indices = std::span<std::uint32_t const>(g.indices);
             out.push_back({kind_info(g.kind), GraphicsPipeline(std::move(desc)), call, g.patches});
         }

@@ -59,6 +59,16 @@ struct LitPixelShader {
     }
 };
 
+/// One colour everywhere.
+struct FlatPixelShader {
+    template <class T> using Input = SurfaceAttributes<T>;
+    std::array<float, 4> color{1, 1, 1, 1};
+    template <class T> float4<T> operator()(PixelInput<T> const&, SurfaceAttributes<T> const&) const
+    {
+        return {T(color[0]), T(color[1]), T(color[2]), T(color[3])};
+    }
+};
+
 /// The unit normal as a colour: 0.5 + 0.5 n.
 struct NormalPixelShader {
     template <class T> using Input = SurfaceAttributes<T>;

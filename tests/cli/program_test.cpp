@@ -85,7 +85,7 @@ TEST(Program, BadUsageExitsTwoWithOneLineThatNamesTheValue)
              {"draw jug --scheme bezier", "gregory-stencil"},
              {"draw jug --size 0x4", "--size"},
              {"draw jug --size 99999x4", "16384"},
-             {"draw jug --view wire", "wire"},
+             {"draw jug --view wires", "wire"},
              {"draw jug --lanes 5", "lanes"},
              {"draw jug --camera eye=1,2", "--camera"},
              {"draw jug --contraction mixed:x", "mixed"},

@@ -143,24 +143,44 @@ std::vector<float> quad_vertices(float depth = 0.5f)
     return v;
 }
 
-DrawStatistics draw_patches(std::size_t patches, VertexCacheModel cache, RenderTarget& target)
+// A target of one sample, cleared to black and depth 1.
+struct Target {
+    ColorTarget color;
+    DepthTarget depth;
+    explicit Target(int size) : color(size, size, Format::R32G32B32A32_FLOAT), depth(size, size)
+    {
+        color.clear({}, ThreadPool(1));
+        depth.clear(1, 0, ThreadPool(1));
+    }
+    RasterTarget raster(bool counter_clockwise)
+    {
+        float const size = float(color.width());
+        RasterTarget r{{&color}, &depth, {{0, 0, size, size, 0, 1}}};
+        r.rasterizer.cull = CullMode::None;
+        r.rasterizer.front_counter_clockwise = counter_clockwise;
+        return r;
+    }
+};
+
+DrawStatistics draw_patches(std::size_t patches, VertexCacheModel cache, Target& target)
 {
     std::vector<float> const vertices = quad_vertices();
     std::vector<std::uint32_t> indices;
     for (std::size_t i = 0; i < patches; ++i) indices.insert(indices.end(), {0, 1, 2, 3});
     DrawCall call;
-    call.vertices = vertices;
-    call.vertex_floats = 7;
+    call.set_vertices(vertices, 7);
     call.indices = std::span<std::uint32_t const>(indices);
-    RasterTarget const raster{&target, {0, 0, 64, 64, 0, 1}, {CullMode::None, true, false, {}}};
-    return draw(GraphicsPipeline(patch_desc()), call, &raster, {}, ThreadPool(2), {cache, {}});
+    RasterTarget const raster = target.raster(true);
+    DrawOptions options;
+    options.vertex_cache = cache;
+    return draw(GraphicsPipeline(patch_desc()), call, &raster, {}, ThreadPool(2), options);
 }
 
 TEST(PipelineStatistics, FollowRulesR42R43R156ToR163)
 {
     for (auto kind : {VertexCacheModel::Kind::None, VertexCacheModel::Kind::Fifo,
                       VertexCacheModel::Kind::Infinite}) {
-        RenderTarget target(64, 64);
+        Target target(64);
         PipelineStatistics const p = draw_patches(3, {kind, 16}, target).pipeline;
         EXPECT_EQ(p.IAVertices, 12u);
         EXPECT_EQ(p.IAPrimitives, 3u);
@@ -181,17 +201,17 @@ TEST(PipelineStatistics, NonIndexedVerticesNeverHitTheCache) // rule R42
     vertices.insert(vertices.end(), vertices.begin(), vertices.begin() + 14);
     DrawCall call;
     call.topology = PrimitiveTopology::TriangleList;
-    call.vertices = vertices;
-    call.vertex_floats = 7;
+    call.set_vertices(vertices, 7);
     call.vertex_count = 6;
     GraphicsPipelineDesc d;
     d.vertex_shader = make_vertex_program(PassThrough{}, {});
     d.pixel_shader = make_pixel_program(FlatColor{}, {});
-    RenderTarget target(16, 16);
-    RasterTarget const raster{&target, {0, 0, 16, 16, 0, 1}, {CullMode::None, false, false, {}}};
-    PipelineStatistics const p = draw(GraphicsPipeline(d), call, &raster, {}, ThreadPool(1),
-                                      {{VertexCacheModel::Kind::Infinite, 0}, {}})
-                                     .pipeline;
+    Target target(16);
+    RasterTarget const raster = target.raster(false);
+    DrawOptions options;
+    options.vertex_cache = {VertexCacheModel::Kind::Infinite, 0};
+    PipelineStatistics const p =
+        draw(GraphicsPipeline(d), call, &raster, {}, ThreadPool(1), options).pipeline;
     EXPECT_EQ(p.VSInvocations, 6u);
     EXPECT_EQ(p.CInvocations, 2u);
 }
@@ -200,8 +220,7 @@ TEST(Draw, WithoutATargetRasterizationIsOff) // rule R5
 {
     std::vector<float> const vertices = quad_vertices();
     DrawCall call;
-    call.vertices = vertices;
-    call.vertex_floats = 7;
+    call.set_vertices(vertices, 7);
     call.vertex_count = 4;
     std::size_t visited = 0;
     PipelineStatistics const p =
@@ -220,8 +239,7 @@ TEST(Draw, ReadsZeroPastTheVertexBuffer) // rule R35
     std::vector<float> const vertices = quad_vertices();
     std::vector<std::uint32_t> const indices{0, 1, 2, 77};
     DrawCall call;
-    call.vertices = vertices;
-    call.vertex_floats = 7;
+    call.set_vertices(vertices, 7);
     call.indices = std::span<std::uint32_t const>(indices);
     float last = -1;
     draw(
@@ -239,14 +257,13 @@ TEST(Draw, RefusesACallThatDoesNotFitThePipeline)
 {
     std::vector<float> const vertices = quad_vertices();
     DrawCall call;
-    call.vertices = vertices;
-    call.vertex_floats = 7;
+    call.set_vertices(vertices, 7);
     call.control_points = 5;
     EXPECT_THROW(draw(GraphicsPipeline(patch_desc()), call, nullptr, {}, ThreadPool(1)), Error);
     call.control_points = 4;
-    call.vertex_floats = 3;
+    call.set_vertices(vertices, 3);
     EXPECT_THROW(draw(GraphicsPipeline(patch_desc()), call, nullptr, {}, ThreadPool(1)), Error);
-    call.vertex_floats = 7;
+    call.set_vertices(vertices, 7);
     call.topology = PrimitiveTopology::TriangleList;
     EXPECT_THROW(draw(GraphicsPipeline(patch_desc()), call, nullptr, {}, ThreadPool(1)), Error);
 }
@@ -259,8 +276,7 @@ TEST(Draw, ShadersFlushDenormals)
     std::vector<std::uint32_t> indices;
     for (int i = 0; i < 200; ++i) indices.insert(indices.end(), {0, 1, 2, 3});
     DrawCall call;
-    call.vertices = vertices;
-    call.vertex_floats = 7;
+    call.set_vertices(vertices, 7);
     call.indices = std::span<std::uint32_t const>(indices);
     std::size_t not_flushed = 0;
     draw(

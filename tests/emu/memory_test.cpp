@@ -113,7 +113,7 @@ Counts run(int lanes, int threads, bool skip_second)
     desc.input_control_points = 4;
     DrawCall call;
     call.control_points = 4;
-    call.vertices = vertices;
+    call.set_vertices(vertices, 3);
     call.indices = std::span<std::uint32_t const>(indices);
     DrawStatistics const s = draw(GraphicsPipeline(desc), call, nullptr, {}, ThreadPool(threads));
     Counts c{};

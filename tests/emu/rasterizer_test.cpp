@@ -40,8 +40,14 @@ struct ShowAttributes {
 constexpr int kSize = 96;
 
 struct Scene {
-    RenderTarget target{kSize, kSize, {-1, -1, -1, -1}};
+    ColorTarget color{kSize, kSize, Format::R32G32B32A32_FLOAT};
+    DepthTarget depth{kSize, kSize};
     PipelineStatistics statistics;
+    Scene()
+    {
+        color.clear({-1, -1, -1, -1}, ThreadPool(1));
+        depth.clear(1, 0, ThreadPool(1));
+    }
 };
 
 // Triangles given in pixels, with depth and w.
@@ -57,14 +63,15 @@ Scene draw_triangles(std::vector<std::array<float, 4>> const& corners,
     }
     DrawCall call;
     call.topology = PrimitiveTopology::TriangleList;
-    call.vertices = vertices;
-    call.vertex_floats = 6;
+    call.set_vertices(vertices, 6);
     call.vertex_count = std::uint32_t(corners.size());
     GraphicsPipelineDesc d;
     d.vertex_shader = make_vertex_program(PassThrough{}, {});
     d.pixel_shader = make_pixel_program(ShowAttributes{}, {});
     Scene s;
-    RasterTarget const raster{&s.target, {0, 0, kSize, kSize, 0, 1}, {cull, false, scissor, rect}};
+    RasterTarget raster{{&s.color}, &s.depth, {{0, 0, kSize, kSize, 0, 1}}, {rect}};
+    raster.rasterizer.cull = cull;
+    raster.rasterizer.scissor_enable = scissor;
     s.statistics = draw(GraphicsPipeline(d), call, &raster, {}, ThreadPool(threads)).pipeline;
     return s;
 }
@@ -119,7 +126,7 @@ RC_GTEST_PROP(Rasterizer, CoverageEqualsTheRuleInExactIntegers, ())
         for (int x = 0; x < kSize; ++x) {
             bool any = false;
             for (std::size_t i = 0; i < t.size(); i += 3) any = covers(&t[i], x, y) || any;
-            RC_ASSERT(any == (s.target.color_row(y)[x][0] != -1.0f));
+            RC_ASSERT(any == (s.color.load(x, y)[0] != -1.0f));
             covered += any;
         }
     RC_ASSERT(s.statistics.PSInvocations >= covered);
@@ -136,8 +143,8 @@ RC_GTEST_PROP(Rasterizer, FlatTrianglesResolveByDepthThenOrder, ())
             float depth = 1, id = -1;
             for (std::size_t i = 0; i < t.size(); i += 3)
                 if (t[i][2] < depth && covers(&t[i], x, y)) depth = t[i][2], id = float(i / 3);
-            RC_ASSERT(s.target.depth_row(y)[x] == depth);
-            RC_ASSERT(s.target.color_row(y)[x][2] == id);
+            RC_ASSERT(s.depth.depth(x, y) == depth);
+            RC_ASSERT(s.color.load(x, y)[2] == id);
         }
 }
 
@@ -148,8 +155,8 @@ RC_GTEST_PROP(Rasterizer, ThreadsDoNotChangeABit, ())
                 b = draw_triangles(t, CullMode::None, false, {}, 3);
     for (int y = 0; y < kSize; ++y)
         for (int x = 0; x < kSize; ++x) {
-            RC_ASSERT(a.target.color_row(y)[x] == b.target.color_row(y)[x]);
-            RC_ASSERT(a.target.depth_row(y)[x] == b.target.depth_row(y)[x]);
+            RC_ASSERT(a.color.load(x, y) == b.color.load(x, y));
+            RC_ASSERT(a.depth.depth(x, y) == b.depth.depth(x, y));
         }
     RC_ASSERT(a.statistics == b.statistics);
 }
@@ -195,7 +202,7 @@ TEST(Rasterizer, PositionsSnapToTheNearestEvenTie) // rules R24, R101
     for (auto const& [x, covered] : std::vector<std::pair<float, bool>>{
              {10.5f + 1 / 512.0f, true}, {10.5f + 3 / 512.0f, false}}) {
         Scene const s = draw_triangles({{x, 0, 0.5f, 1}, {60, 0, 0.5f, 1}, {x, 60, 0.5f, 1}});
-        EXPECT_EQ(s.target.color_row(5)[10][0] != -1.0f, covered) << x;
+        EXPECT_EQ(s.color.load(10, 5)[0] != -1.0f, covered) << x;
     }
 }
 
@@ -205,7 +212,7 @@ TEST(Rasterizer, CullsByScreenOrientation) // rule R104
         {10, 10, 0.5f, 1}, {50, 10, 0.5f, 1}, {10, 50, 0.5f, 1}};
     EXPECT_GT(draw_triangles(clockwise, CullMode::Back).statistics.PSInvocations, 0u);
     EXPECT_EQ(draw_triangles(clockwise, CullMode::Front).statistics.PSInvocations, 0u);
-    EXPECT_EQ(draw_triangles(clockwise).target.color_row(15)[15][3], 1.0f);
+    EXPECT_EQ(draw_triangles(clockwise).color.load(15, 15)[3], 1.0f);
 }
 
 TEST(Rasterizer, TheScissorCutsHalfOpen) // rule R98
@@ -214,9 +221,9 @@ TEST(Rasterizer, TheScissorCutsHalfOpen) // rule R98
         {0, 0, 0.5f, 1}, {3 * kSize, 0, 0.5f, 1}, {0, 3 * kSize, 0.5f, 1}};
     Scene const s = draw_triangles(all, CullMode::None, true, {5, 7, 11, 9});
     EXPECT_EQ(s.statistics.PSInvocations, 6u * 2);
-    EXPECT_NE(s.target.color_row(7)[5][0], -1.0f);
-    EXPECT_EQ(s.target.color_row(9)[5][0], -1.0f);
-    EXPECT_EQ(s.target.color_row(7)[11][0], -1.0f);
+    EXPECT_NE(s.color.load(5, 7)[0], -1.0f);
+    EXPECT_EQ(s.color.load(5, 9)[0], -1.0f);
+    EXPECT_EQ(s.color.load(11, 7)[0], -1.0f);
 }
 
 // Perspective: attributes are linear in the plane, not on the screen (R120).
@@ -230,7 +237,7 @@ TEST(Rasterizer, AttributesArePerspectiveCorrect)
         double const denominator = (1 - a - b) + a / 4 + b;
         double const expected = (a / 4 + 2 * b) / denominator;
         // A dozen float roundings of values below 4.
-        EXPECT_NEAR(s.target.color_row(0)[x][0], expected, 12 * 4 * 0x1p-24) << x;
+        EXPECT_NEAR(s.color.load(x, 0)[0], expected, 12 * 4 * 0x1p-24) << x;
     }
 }
 
@@ -241,11 +248,11 @@ TEST(Clipping, CutsAtNearAndFarAndCountsPrimitives)
         {10, 10, -0.5f, 1}, {80, 10, 0.5f, 1}, {10, 80, 0.5f, 1}};
     Scene const s = draw_triangles(through);
     EXPECT_EQ(s.statistics.CInvocations, 1u);
-    EXPECT_EQ(s.statistics.CPrimitives, 2u);         // a quad in two
-    EXPECT_EQ(s.target.color_row(11)[11][0], -1.0f); // in front of the near plane
-    EXPECT_NE(s.target.color_row(40)[45][0], -1.0f);
+    EXPECT_EQ(s.statistics.CPrimitives, 2u);   // a quad in two
+    EXPECT_EQ(s.color.load(11, 11)[0], -1.0f); // in front of the near plane
+    EXPECT_NE(s.color.load(45, 40)[0], -1.0f);
     for (int y = 0; y < kSize; ++y)
-        for (int x = 0; x < kSize; ++x) ASSERT_GE(s.target.depth_row(y)[x], 0.0f);
+        for (int x = 0; x < kSize; ++x) ASSERT_GE(s.depth.depth(x, y), 0.0f);
 
     std::vector<std::array<float, 4>> outside = through;
     for (auto& v : outside) v[2] = 1.5f;

@@ -24,7 +24,8 @@ fs::path scratch()
 TEST(ImageWriter, WritesPngAndExrAndLeavesNothingElse)
 {
     fs::path const folder = scratch();
-    RenderTarget target(5, 3, {0.25f, 0.5f, 1.0f, 1.0f});
+    ColorTarget target(5, 3, Format::R32G32B32A32_FLOAT);
+    target.clear({0.25f, 0.5f, 1.0f, 1.0f}, ThreadPool(1));
     write_image(target, folder / "a.png");
     write_image(target, folder / "a.exr");
     std::size_t files = 0;
@@ -38,7 +39,8 @@ TEST(ImageWriter, WritesPngAndExrAndLeavesNothingElse)
 
 TEST(ImageWriter, RefusesOtherExtensionsAndMissingFolders)
 {
-    RenderTarget const target(4, 4);
+    ColorTarget target(4, 4);
+    target.clear({}, ThreadPool(1));
     EXPECT_THROW(write_image(target, scratch() / "a.bmp"), WriteError);
     EXPECT_THROW(write_image(target, scratch() / "missing" / "a.png"), WriteError);
 }
@@ -57,16 +59,16 @@ TEST(AtomicFile, AFailedWriteKeepsTheOldFile)
     EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
 }
 
-TEST(RenderTarget, NamesItsLimit)
+TEST(ColorTarget, NamesItsLimit)
 {
     try {
-        RenderTarget const target(16385, 4);
+        ColorTarget const target(16385, 4);
         FAIL();
     } catch (LimitError const& e) {
         EXPECT_EQ(e.value, 16385u);
         EXPECT_EQ(e.limit, 16384u);
     }
-    EXPECT_THROW(RenderTarget(0, 4), Error);
+    EXPECT_THROW(ColorTarget(0, 4), Error);
 }
 
 } // namespace

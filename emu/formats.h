@@ -1,0 +1,104 @@
+// Resource formats and the conversions between shader floats and memory (rules R20 to R26).
+//
+// Every conversion is the exact ideal formula of the specification (choice I-8), in integers or in
+// double, without libm: the same bits on every machine and in every denormal mode.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace tessemu {
+
+/// DXGI formats, under their names.
+enum class Format : std::uint8_t {
+    R32G32B32A32_FLOAT,
+    R32G32B32A32_UINT,
+    R32G32B32A32_SINT,
+    R32G32B32_FLOAT,
+    R32G32_FLOAT,
+    R32_FLOAT,
+    R32_UINT,
+    R32_SINT,
+    R16G16B16A16_FLOAT,
+    R16G16B16A16_UNORM,
+    R16G16B16A16_SNORM,
+    R16G16B16A16_UINT,
+    R16G16B16A16_SINT,
+    R16G16_FLOAT,
+    R11G11B10_FLOAT,
+    R8G8B8A8_UNORM,
+    R8G8B8A8_UNORM_SRGB,
+    R8G8B8A8_SNORM,
+    R8G8B8A8_UINT,
+    R16_UNORM,
+    R8_UNORM,
+    D16_UNORM,
+    D24_UNORM_S8_UINT,
+    D32_FLOAT,
+    D32_FLOAT_S8X24_UINT,
+};
+
+enum class FormatType : std::uint8_t { Float, Unorm, Srgb, Snorm, Uint, Sint, Depth };
+
+struct FormatInfo {
+    std::string_view name;
+    FormatType type;
+    std::uint8_t components;
+    std::uint8_t bytes; ///< of one element
+};
+FormatInfo const& info(Format format);
+
+/// One element as four shader registers: missing components are 0, a missing fourth is 1 (R36).
+/// Integer formats give their bits, as in a shader register. 32-bit components pass untouched.
+std::array<float, 4> decode(Format format, std::byte const* element);
+
+/// Four registers as one element. Float formats round toward zero to fewer bits (R20), normalised
+/// ones round to nearest (R21), integer ones clamp to their range (R26).
+void encode(Format format, std::array<float, 4> const& value, std::byte* element);
+
+/// The range that blending clamps to, [0,1] or [-1,1]; float formats have none (R136).
+constexpr bool is_clamped(FormatType t)
+{
+    return t == FormatType::Unorm || t == FormatType::Srgb || t == FormatType::Snorm;
+}
+
+// Scalars.
+
+/// Float to a narrower float with `exponent_bits` and `mantissa_bits`, rounding toward zero; too
+/// large gives the largest finite value, infinity and NaN stay (R20); unsigned formats turn
+/// negative numbers into 0 (and -infinity too). Denormals of the narrow format are kept (R10).
+std::uint32_t small_float_from_float(float value, int exponent_bits, int mantissa_bits,
+                                     bool is_signed);
+float float_from_small_float(std::uint32_t bits, int exponent_bits, int mantissa_bits,
+                             bool is_signed);
+inline std::uint16_t half_from_float(float v)
+{
+    return std::uint16_t(small_float_from_float(v, 5, 10, true));
+}
+inline float float_from_half(std::uint16_t bits)
+{
+    return float_from_small_float(bits, 5, 10, true);
+}
+
+/// trunc(c (2^n - 1) + 0.5) of c clamped to [0,1]; NaN gives 0 (R21). 1 <= bits <= 24.
+std::uint32_t unorm_from_float(float c, int bits);
+/// i / (2^n - 1), correctly rounded (R22).
+float float_from_unorm(std::uint32_t i, int bits);
+/// Scale 2^(n-1) - 1, half away from zero (R21).
+std::int32_t snorm_from_float(float c, int bits);
+/// Both of the lowest codes are -1.
+float float_from_snorm(std::int32_t i, int bits);
+/// The 8-bit code nearest to the sRGB curve of linear c (R23).
+std::uint8_t srgb8_from_linear(float c);
+float linear_from_srgb8(std::uint8_t code);
+/// Nearest i.f fixed-point number, ties to even, clamped to its range; NaN gives 0 (R24).
+std::int32_t fixed_from_float(float value, int integer_bits, int fraction_bits);
+/// Toward zero, clamped; NaN gives 0 (R19).
+std::int32_t int_from_float(float value);
+std::uint32_t uint_from_float(float value);
+
+} // namespace tessemu

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emu/geometry.h"
+
+namespace tessemu {
+
+namespace {
+
+constexpr std::size_t kPadding = 16; // whole groups of lanes are written
+
+std::size_t padded(std::size_t n)
+{
+    return (n + kPadding - 1) / kPadding * kPadding;
+}
+
+template <class Program> std::vector<ResourceInfo> resources(std::shared_ptr<Program> const& p)
+{
+    return p ? p->resources() : std::vector<ResourceInfo>{};
+}
+
+} // namespace
+
+GeometryStages::GeometryStages(GraphicsPipelineDesc const& desc, DrawCall const& call)
+    : d_(desc),
+      call_(call),
+      hs_buffers_(resources(desc.hull_shader)),
+      ds_buffers_(resources(desc.domain_shader)),
+      gs_buffers_(resources(desc.geometry_shader))
+{
+}
+
+OutputLayout GeometryStages::output() const
+{
+    if (d_.geometry_shader) return d_.geometry_shader->output();
+    if (d_.domain_shader) return d_.domain_shader->output();
+    return d_.vertex_shader->output();
+}
+
+void GeometryStages::run(GeometryChunk& c, AssembledPrimitives const& primitives,
+                         float const* shaded_vertices, std::size_t first, std::size_t count) const
+{
+    c.first = first;
+    c.count = count;
+    c.hull = c.domain = c.geometry = StageCounters{};
+    c.assembly = AssemblyCounters{};
+    c.factors_above_max = c.tessellated_points = c.tessellated_indices = 0;
+    c.primitives.clear();
+    if (d_.hull_shader)
+        shade_patches(c, primitives, shaded_vertices);
+    else
+        gather(c, primitives, shaded_vertices);
+    if (d_.geometry_shader) run_geometry_shader(c);
+}
+
+void GeometryStages::shade_patches(GeometryChunk& c, AssembledPrimitives const& primitives,
+                                   float const* shaded_vertices) const
+{
+    HullProgram const& hs = *d_.hull_shader;
+    DomainProgram const& ds = *d_.domain_shader;
+    std::size_t const point_floats = std::size_t(hs.control_points() * hs.control_point_floats());
+    std::size_t const constant_floats =
+        std::size_t(hs.patch_constants() * hs.patch_constant_floats());
+    c.control_points.resize(c.count * point_floats);
+    c.patch_constants.resize(c.count * constant_floats);
+    c.factors.resize(c.count);
+    auto const n = std::size_t(call_.control_points);
+    hs.run({primitives.vertices.subspan(c.first * n, c.count * n), shaded_vertices,
+            call_.control_points, std::uint32_t(c.first), c.count, c.control_points.data(),
+            c.patch_constants.data(), c.factors.data()},
+           c.hull, hs_buffers_);
+    if (hs.max_tess_factor() < kMaxTessFactor)
+        for (TessFactors& factors : c.factors)
+            for (float& f : factors)
+                if (f > hs.max_tess_factor()) f = hs.max_tess_factor(), ++c.factors_above_max;
+
+    c.patterns.resize(c.count);
+    c.first_point.resize(c.count);
+    std::size_t points = 0;
+    TessellatorCache& cache = tessellator_cache();
+    for (std::size_t p = 0; p < c.count; ++p) {
+        c.patterns[p] = cache.find(c.factors[p]);
+        c.first_point[p] = points;
+        points += padded(c.patterns[p]->patch.points());
+        c.tessellated_points += c.patterns[p]->patch.points();
+        c.tessellated_indices += c.patterns[p]->patch.indices.size();
+    }
+    c.stride = points;
+    c.shaded.resize(points * std::size_t(ds.output_floats()));
+    StageScope const scope(c.domain, ds_buffers_, ds.seed());
+    for (std::size_t p = 0; p < c.count; ++p) {
+        DomainPoints const& d = *c.patterns[p];
+        ds.run({c.control_points.data() + p * point_floats,
+                c.patch_constants.data() + p * constant_floats, std::int32_t(c.first + p),
+                d.u.data(), d.v.data(), d.patch.points(), c.shaded.data() + c.first_point[p],
+                c.stride},
+               hs.patch_constants(), c.domain);
+    }
+}
+
+// Without tessellation: the vertex shader's outputs, all vertices of each primitive.
+void GeometryStages::gather(GeometryChunk& c, AssembledPrimitives const& primitives,
+                            float const* shaded_vertices) const
+{
+    auto const out = std::size_t(d_.vertex_shader->output_floats());
+    std::size_t const n = primitives.vertices_per_primitive;
+    c.stride = padded(n * c.count);
+    c.shaded.assign(c.stride * out, 0.0f);
+    for (std::size_t i = 0; i < n * c.count; ++i) {
+        float const* const v = shaded_vertices + primitives.vertices[n * c.first + i] * out;
+        for (std::size_t k = 0; k < out; ++k) c.shaded[k * c.stride + i] = v[k];
+    }
+}
+
+void GeometryStages::run_geometry_shader(GeometryChunk& c) const
+{
+    GeometryProgram const& gs = *d_.geometry_shader;
+    std::vector<std::uint32_t> index;
+    std::vector<std::int32_t> ids;
+    for_each_input_primitive(c, [&](std::uint32_t const* v, int n, std::int32_t id) {
+        index.insert(index.end(), v, v + n);
+        ids.push_back(id);
+    });
+    c.gs.vertices.clear();
+    c.gs.primitives.clear();
+    gs.run({c.shaded.data(), c.stride, index, ids}, c.gs, c.geometry, gs_buffers_);
+
+    // The rasterized stream's vertices take the place of the stage's inputs.
+    int const stream = d_.stream_output ? d_.stream_output->rasterized_stream : 0;
+    auto const n = std::size_t(gs.vertices_per_output()), floats = std::size_t(gs.output().floats);
+    c.gs_primitive_id.clear();
+    c.gs_viewport.clear();
+    std::vector<std::size_t> source;
+    for (std::size_t p = 0; p < c.gs.primitives.size(); ++p) {
+        auto const& primitive = c.gs.primitives[p];
+        if (primitive.stream != stream) continue;
+        source.push_back(p);
+        c.gs_primitive_id.push_back(primitive.primitive_id);
+        // Out of range acts as 0 (R99).
+        bool const in =
+            primitive.viewport_index >= 0 && primitive.viewport_index < std::int32_t(kMaxViewports);
+        c.gs_viewport.insert(c.gs_viewport.end(), n,
+                             std::uint8_t(in ? primitive.viewport_index : 0));
+    }
+    c.stride = padded(n * source.size());
+    c.gs_viewport.resize(c.stride);
+    c.shaded.assign(c.stride * floats, 0.0f);
+    for (std::size_t p = 0; p < source.size(); ++p)
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t k = 0; k < floats; ++k)
+                c.shaded[k * c.stride + p * n + i] =
+                    c.gs.vertices[(source[p] * n + i) * floats + k];
+}
+
+void GeometryStages::stream_out(GeometryChunk const& c, StreamOutput& out) const
+{
+    if (d_.geometry_shader) {
+        auto const n = std::size_t(d_.geometry_shader->vertices_per_output());
+        auto const floats = std::size_t(d_.geometry_shader->output().floats);
+        for (std::size_t p = 0; p < c.gs.primitives.size(); ++p)
+            out.write(c.gs.primitives[p].stream, int(n), [&](int i, int k) {
+                return c.gs.vertices[(p * n + std::size_t(i)) * floats + std::size_t(k)];
+            });
+        return;
+    }
+    for_each_input_primitive(c, [&](std::uint32_t const* v, int n, std::int32_t) {
+        out.write(0, n, [&](int i, int k) { return c.shaded[std::size_t(k) * c.stride + v[i]]; });
+    });
+}
+
+TessellatorCache& GeometryStages::tessellator_cache() const
+{
+    std::scoped_lock const lock(cache_mutex_);
+    auto& slot = caches_[std::this_thread::get_id()];
+    if (!slot)
+        slot = std::make_unique<TessellatorCache>(
+            TessellatorState{d_.hull_shader->domain(), d_.partitioning, d_.output_primitive});
+    return *slot;
+}
+
+} // namespace tessemu

@@ -1,0 +1,129 @@
+// The geometry side of a draw: a chunk of primitives from control points to assembled primitives.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/graphics_pipeline.h"
+#include "emu/primitive_assembly.h"
+
+#include <mutex>
+#include <thread>
+#include <unordered_map>
+
+namespace tessemu {
+
+/// A few primitives on their way. Memory is reused from wave to wave.
+struct GeometryChunk {
+    std::size_t first = 0, count = 0; ///< input primitives
+    // Tessellation.
+    std::vector<float> control_points, patch_constants;
+    std::vector<TessFactors> factors;
+    std::vector<std::shared_ptr<DomainPoints const>> patterns;
+    std::vector<std::size_t> first_point; ///< of each patch, padded
+    // The last geometry stage's vertices, component k of vertex i at [k * stride + i].
+    std::vector<float> shaded;
+    std::size_t stride = 0;
+    GeometryResult gs;
+    std::vector<std::int32_t> gs_primitive_id; ///< of rasterized primitives
+    std::vector<std::uint8_t> gs_viewport;     ///< of rasterized vertices
+    // Ready for the rasterizer.
+    AssembledVertices assembled;
+    std::vector<AssembledPrimitive> primitives;
+
+    StageCounters hull, domain, geometry;
+    AssemblyCounters assembly;
+    std::uint64_t tessellated_points = 0, tessellated_indices = 0, factors_above_max = 0;
+};
+
+/// Runs hull shader, tessellator, domain shader and geometry shader over chunks, on any thread.
+class GeometryStages {
+public:
+    GeometryStages(GraphicsPipelineDesc const& desc, DrawCall const& call);
+
+    void run(GeometryChunk& chunk, AssembledPrimitives const& primitives,
+             float const* shaded_vertices, std::size_t first, std::size_t count) const;
+
+    /// work(v, n, primitive_id, viewport) for each primitive of n vertices that goes to the
+    /// rasterizer, in order; v are columns of chunk.shaded.
+    template <class Work> void for_each_primitive(GeometryChunk const& c, Work&& work) const
+    {
+        if (d_.geometry_shader) {
+            auto const n = std::uint32_t(d_.geometry_shader->vertices_per_output());
+            for (std::uint32_t p = 0; p < c.gs_primitive_id.size(); ++p) {
+                std::uint32_t const v[3] = {n * p, n * p + 1, n * p + 2};
+                work(v, int(n), c.gs_primitive_id[p], c.gs_viewport[n * p]);
+            }
+            return;
+        }
+        for_each_input_primitive(c, [&](std::uint32_t const* v, int n, std::int32_t id) {
+            work(v, n, id, std::uint8_t(0));
+        });
+    }
+
+    /// Writes the chunk's primitives to stream output. Call in submission order.
+    void stream_out(GeometryChunk const& chunk, StreamOutput& out) const;
+
+    OutputLayout output() const;
+    StageBuffers const& hull_buffers() const { return hs_buffers_; }
+    StageBuffers const& domain_buffers() const { return ds_buffers_; }
+    StageBuffers const& geometry_buffers() const { return gs_buffers_; }
+
+private:
+    // What reaches the geometry shader, or the rasterizer where there is none.
+    template <class Work> void for_each_input_primitive(GeometryChunk const& c, Work&& work) const
+    {
+        if (!d_.hull_shader) {
+            auto const per =
+                std::uint32_t(vertices_per_primitive(call_.topology, call_.control_points));
+            bool const adjacency = !d_.geometry_shader && is_adjacency(call_.topology);
+            for (std::uint32_t p = 0; p < c.count; ++p) {
+                std::uint32_t v[32];
+                int n = int(per);
+                for (std::uint32_t k = 0; k < per; ++k) v[k] = per * p + k;
+                if (adjacency && per == 4) v[0] = 4 * p + 1, v[1] = 4 * p + 2, n = 2; // R28
+                if (adjacency && per == 6) v[1] = 6 * p + 2, v[2] = 6 * p + 4, n = 3;
+                work(static_cast<std::uint32_t const*>(v), n, std::int32_t(c.first + p));
+            }
+            return;
+        }
+        int const n = d_.output_primitive == OutputPrimitive::Point  ? 1
+                      : d_.output_primitive == OutputPrimitive::Line ? 2
+                                                                     : 3;
+        for (std::size_t p = 0; p < c.count; ++p) {
+            auto const base = std::uint32_t(c.first_point[p]);
+            TessellatedPatch const& patch = c.patterns[p]->patch;
+            auto const id = std::int32_t(c.first + p);
+            if (n == 1) {
+                for (std::uint32_t i = 0; i < patch.points(); ++i) {
+                    std::uint32_t const v[1] = {base + i};
+                    work(static_cast<std::uint32_t const*>(v), 1, id);
+                }
+                continue;
+            }
+            for (std::size_t i = 0; i < patch.indices.size(); i += std::size_t(n)) {
+                std::uint32_t v[3] = {};
+                for (int k = 0; k < n; ++k) v[k] = base + patch.indices[i + std::size_t(k)];
+                work(static_cast<std::uint32_t const*>(v), n, id);
+            }
+        }
+    }
+    static bool is_adjacency(PrimitiveTopology t)
+    {
+        return t >= PrimitiveTopology::LineListAdj && t <= PrimitiveTopology::TriangleStripAdj;
+    }
+
+    void shade_patches(GeometryChunk& c, AssembledPrimitives const& primitives,
+                       float const* shaded_vertices) const;
+    void gather(GeometryChunk& c, AssembledPrimitives const& primitives,
+                float const* shaded_vertices) const;
+    void run_geometry_shader(GeometryChunk& c) const;
+    TessellatorCache& tessellator_cache() const;
+
+    GraphicsPipelineDesc const& d_;
+    DrawCall const& call_;
+    StageBuffers hs_buffers_, ds_buffers_, gs_buffers_;
+    mutable std::mutex cache_mutex_;
+    mutable std::unordered_map<std::thread::id, std::unique_ptr<TessellatorCache>> caches_;
+};
+
+} // namespace tessemu
