@@ -32,9 +32,9 @@ void whole_frame(benchmark::State& state)
 {
     Scene const scene(float(state.range(0)));
     ThreadPool const threads(int(state.range(1)));
-    DrawStatistics statistics;
-    for (auto _ : state)
-        statistics = draw_frame(*scene.patches, scene.settings, threads).statistics;
+    Frame frame(scene.settings);
+    for (auto _ : state) draw_frame(*scene.patches, scene.settings, threads, frame);
+    DrawStatistics const& statistics = frame.statistics;
     PipelineStatistics const& p = statistics.pipeline;
     if (p.PSInvocations == 0) state.SkipWithError("nothing was drawn");
     state.counters["points"] = double(p.DSInvocations);

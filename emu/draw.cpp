@@ -6,27 +6,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/geometry.h"
 #include "emu/rasterizer.h"
+#include "emu/triangle_stream.h"
 
 #include <cmath>
 
 namespace tessemu {
 
+// A chunk and its primitives, or its shaded fragments, by tile.
+struct DrawMemory::Parts {
+    struct Chunk : GeometryChunk {
+        FragmentBins fragments;
+        std::uint64_t fragment_count = 0;
+        std::vector<std::uint32_t> bin_start, bin_primitives; // by tile, in submission order
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> bin_entries;
+    };
+    std::vector<Chunk> wave;
+    std::vector<float> shaded_vertices;
+    std::mutex idle_mutex;
+    std::vector<std::unique_ptr<GeometryChunk>> idle; // of threads that stream
+};
+
+DrawMemory::DrawMemory() : parts_(std::make_unique<Parts>()) {}
+DrawMemory::~DrawMemory() = default;
+DrawMemory::DrawMemory(DrawMemory&&) noexcept = default;
+DrawMemory& DrawMemory::operator=(DrawMemory&&) noexcept = default;
+
 namespace {
+
+using Chunk = DrawMemory::Parts::Chunk;
 
 constexpr std::size_t kPatchesPerChunk = 8;
 constexpr std::size_t kPrimitivesPerChunk = 512; // of a draw without tessellation
-constexpr std::size_t kChunksPerWave = 64;
-
-// A chunk and its primitives by tile.
-struct Chunk : GeometryChunk {
-    std::vector<std::uint32_t> bin_start, bin_primitives; // by tile, in submission order
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> bin_entries;
-};
+constexpr std::size_t kChunksPerWave = 128;
+// A draw that streams keeps fragments only: waves grow until they hold about so many.
+constexpr std::uint64_t kFragmentsPerWave = std::uint64_t(1) << 21;
+constexpr std::size_t kMostChunksPerWave = 4096;
 
 // Targets, and what of them may be written.
 class Raster {
 public:
-    Raster(RasterTarget const& target, GraphicsPipelineDesc const& desc, OutputLayout layout)
+    // `triangles`: nothing else reaches the rasterizer.
+    Raster(RasterTarget const& target, GraphicsPipelineDesc const& desc, OutputLayout layout,
+           bool triangles)
         : target_(with_all_viewports(target, desc)),
           buffers_(desc.pixel_shader ? desc.pixel_shader->resources()
                                      : std::vector<ResourceInfo>{}),
@@ -50,9 +71,12 @@ public:
         }
         tiles_x = (all.right + kTileSize - 1) >> kTileShift;
         tiles_y = (all.bottom + kTileSize - 1) >> kTileShift;
+        streams_ = TriangleStream::supports(setup_, triangles);
     }
     Raster(Raster const&) = delete;
     Raster& operator=(Raster const&) = delete;
+
+    bool streams() const { return streams_; }
 
     // Assembles a chunk and sorts its primitives into tiles.
     void assemble(GeometryStages const& stages, Chunk& c) const
@@ -60,9 +84,41 @@ public:
         assembler_.project(c.shaded.data(), c.stride, c.stride, c.gs_viewport, c.assembled);
         stages.for_each_primitive(
             c, [&](std::uint32_t const* v, int n, std::int32_t id, std::uint8_t viewport) {
-                assembler_.assemble(c.assembled, v, n, id, viewport, c.assembly, c.primitives);
+                assembler_.assemble(c.assembled, v, n, id, viewport, c.counters.assembly,
+                                    c.primitives);
             });
         bin(c);
+    }
+
+    // Turns primitives into shaded fragments by tile. Only they and the counts stay in `slot`.
+    void stream(GeometryStages const& stages, AssembledPrimitives const& primitives,
+                float const* shaded_vertices, std::size_t first, std::size_t count, Chunk& slot,
+                DrawMemory::Parts& memory)
+    {
+        Worker w = take_worker(memory);
+        GeometryChunk& c = *w.chunk;
+        w.stream->begin(c.assembled, slot.fragments);
+        if (stages.tessellates()) {
+            stages.run_by_patch(c, primitives, shaded_vertices, first, count, [&](std::size_t p) {
+                assembler_.project(c.shaded.data(), c.stride, c.stride, {}, c.assembled);
+                w.stream->add_patch(*c.patterns[p], std::int32_t(first + p), c.counters.assembly);
+            });
+        } else {
+            stages.run(c, primitives, shaded_vertices, first, count);
+            assembler_.project(c.shaded.data(), c.stride, c.stride, {}, c.assembled);
+            stages.for_each_primitive(
+                c, [&](std::uint32_t const* v, int, std::int32_t id, std::uint8_t) {
+                    w.stream->add_triangle(v, id, c.counters.assembly);
+                });
+        }
+        w.stream->end();
+        slot.first = first;
+        slot.count = count;
+        slot.counters = c.counters;
+        slot.fragment_count = w.stream->fragments();
+        std::scoped_lock const lock(memory.idle_mutex);
+        memory.idle.push_back(std::move(w.chunk));
+        idle_.push_back(std::move(w.stream));
     }
 
     void rasterize(std::span<Chunk> wave, ThreadPool const& threads)
@@ -87,6 +143,28 @@ public:
             raster.flush();
         });
         for (RasterCounters const& c : tile_counters) counters += c;
+    }
+
+    // The depth test of a wave's fragments. Returns how many there were.
+    std::uint64_t merge(std::span<Chunk> wave, ThreadPool const& threads)
+    {
+        std::vector<std::uint64_t> passed(std::size_t(tiles_x * tiles_y));
+        threads.parallel_for(passed.size(), [&](std::size_t t) {
+            for (std::size_t i = 0; i < wave.size(); ++i) {
+                if (i + 1 < wave.size()) wave[i + 1].fragments.prefetch(t);
+                if (!wave[i].fragments.empty(t))
+                    passed[t] += merge_fragments(target_, wave[i].fragments, t);
+            }
+        });
+        std::uint64_t all = 0;
+        for (std::uint64_t n : passed) all += n;
+        counters.passed_samples += all;
+        counters.pixel.invocations += all; // shading is pure: what fails might never have run
+        counters.pixel.flops += setup_.pixel_shader->info().flops * all;
+        std::uint64_t fragments = 0;
+        for (Chunk const& c : wave) fragments += c.fragment_count;
+        counters.covered_samples += fragments;
+        return fragments;
     }
 
     StageBuffers const& buffers() const { return buffers_; }
@@ -114,6 +192,30 @@ private:
             return std::clamp(int(std::floor(to)), 0, ColorTarget::kMaxSize);
         };
         return {0, 0, size(v.x + v.width), size(v.y + v.height)};
+    }
+
+    struct Worker {
+        std::unique_ptr<GeometryChunk> chunk;
+        std::unique_ptr<TriangleStream> stream;
+    };
+    Worker take_worker(DrawMemory::Parts& memory)
+    {
+        Worker w;
+        {
+            std::scoped_lock const lock(memory.idle_mutex);
+            if (!memory.idle.empty()) {
+                w.chunk = std::move(memory.idle.back());
+                memory.idle.pop_back();
+            }
+            if (!idle_.empty()) {
+                w.stream = std::move(idle_.back());
+                idle_.pop_back();
+            }
+        }
+        if (!w.chunk) w.chunk = std::make_unique<GeometryChunk>();
+        if (!w.stream)
+            w.stream = std::make_unique<TriangleStream>(setup_, assembler_, tiles_x, tiles_y);
+        return w;
     }
 
     // Lists of primitives by tile, each in submission order (a counting sort).
@@ -146,6 +248,8 @@ private:
     RasterSetup setup_;
     PrimitiveAssembler assembler_;
     int tiles_x = 0, tiles_y = 0;
+    bool streams_ = false;
+    std::vector<std::unique_ptr<TriangleStream>> idle_; // of threads between chunks
 };
 
 // R5.
@@ -165,9 +269,12 @@ public:
           threads_(threads),
           options_(options),
           stages_(d_, call),
-          vs_buffers_(d_.vertex_shader->resources())
+          vs_buffers_(d_.vertex_shader->resources()),
+          memory_(options.memory ? *options.memory : own_memory_),
+          shaded_vertices_(memory_.parts().shaded_vertices)
     {
-        if (rasterization_is_on(d_, target)) raster_.emplace(*target, d_, stages_.output());
+        if (rasterization_is_on(d_, target))
+            raster_.emplace(*target, d_, stages_.output(), stages_.makes_triangles());
         if (d_.stream_output) stream_output_.emplace(*d_.stream_output, options.stream_output);
     }
 
@@ -188,21 +295,40 @@ private:
         run_vertex_shader(instance);
         std::size_t const per_chunk = d_.hull_shader ? kPatchesPerChunk : kPrimitivesPerChunk;
         std::size_t const chunks = (all + per_chunk - 1) / per_chunk;
-        std::vector<Chunk>& wave = wave_;
-        wave.resize(std::max(wave.size(), std::min(chunks, kChunksPerWave)));
-        for (std::size_t first = 0; first < chunks; first += kChunksPerWave) {
-            std::size_t const n = std::min(kChunksPerWave, chunks - first);
+        std::vector<Chunk>& wave = memory_.parts().wave;
+        bool const streams = raster_ && raster_->streams() && !visit_ && !stream_output_;
+        std::size_t per_wave = kChunksPerWave;
+        for (std::size_t first = 0; first < chunks;) {
+            std::size_t const n = std::min(per_wave, chunks - first);
+            if (wave.size() < n) wave.resize(n);
             threads_.parallel_for(n, [&](std::size_t i) {
                 DenormalMode const flush(DenormalMode::Flush); // fixed function between the stages
                 std::size_t const p = (first + i) * per_chunk;
-                stages_.run(wave[i], primitives_, shaded_vertices_.data(), p,
-                            std::min(per_chunk, all - p));
+                std::size_t const count = std::min(per_chunk, all - p);
+                float const* const vertices = shaded_vertices_.data();
+                if (streams)
+                    return raster_->stream(stages_, primitives_, vertices, p, count, wave[i],
+                                           memory_.parts());
+                stages_.run(wave[i], primitives_, vertices, p, count);
                 if (raster_) raster_->assemble(stages_, wave[i]);
             });
             for (std::size_t i = 0; i < n; ++i) finish_geometry(wave[i]);
-            if (raster_) raster_->rasterize(std::span(wave).first(n), threads_);
-            if (options_.progress) options_.progress(std::min((first + n) * per_chunk, all), all);
+            std::span<Chunk> const done = std::span(wave).first(n);
+            if (streams)
+                per_wave = next_wave(n, raster_->merge(done, threads_));
+            else if (raster_)
+                raster_->rasterize(done, threads_);
+            first += n;
+            if (options_.progress) options_.progress(std::min(first * per_chunk, all), all);
         }
+    }
+
+    static std::size_t next_wave(std::size_t chunks, std::uint64_t fragments)
+    {
+        std::uint64_t const fit = chunks * kFragmentsPerWave / std::max<std::uint64_t>(1, fragments);
+        return std::size_t(std::clamp<std::uint64_t>(fit, kChunksPerWave,
+                                                     std::min(4 * chunks + kChunksPerWave,
+                                                              kMostChunksPerWave)));
     }
 
     // The cache decides which vertices run, and run again after a miss. They run in blocks; a
@@ -246,15 +372,16 @@ private:
 
     void finish_geometry(Chunk& c)
     {
-        hull_ += c.hull;
-        domain_ += c.domain;
-        geometry_ += c.geometry;
-        tessellated_points_ += c.tessellated_points;
-        tessellated_indices_ += c.tessellated_indices;
-        stats_.tess_factors_above_max += c.factors_above_max;
-        stats_.pipeline.CInvocations += c.assembly.clip_invocations;
-        stats_.pipeline.CPrimitives += c.assembly.clip_primitives;
-        if (d_.geometry_shader) stats_.pipeline.GSPrimitives += c.gs.primitives.size();
+        GeometryCounters const& g = c.counters;
+        hull_ += g.hull;
+        domain_ += g.domain;
+        geometry_ += g.geometry;
+        tessellated_points_ += g.tessellated_points;
+        tessellated_indices_ += g.tessellated_indices;
+        stats_.tess_factors_above_max += g.factors_above_max;
+        stats_.pipeline.CInvocations += g.assembly.clip_invocations;
+        stats_.pipeline.CPrimitives += g.assembly.clip_primitives;
+        stats_.pipeline.GSPrimitives += g.geometry_primitives;
         if (stream_output_) stages_.stream_out(c, *stream_output_);
         if (!visit_ || !d_.hull_shader) return;
         for (std::size_t p = 0; p < c.count; ++p)
@@ -376,8 +503,9 @@ private:
     std::optional<StreamOutput> stream_output_;
 
     AssembledPrimitives primitives_;
-    std::vector<float> shaded_vertices_;
-    std::vector<Chunk> wave_;
+    DrawMemory own_memory_;
+    DrawMemory& memory_;
+    std::vector<float>& shaded_vertices_;
     StageCounters vertex_, hull_, domain_, geometry_;
     std::uint64_t tessellated_points_ = 0, tessellated_indices_ = 0;
     DrawStatistics stats_;

@@ -35,65 +35,101 @@ OutputLayout GeometryStages::output() const
     return d_.vertex_shader->output();
 }
 
-void GeometryStages::run(GeometryChunk& c, AssembledPrimitives const& primitives,
-                         float const* shaded_vertices, std::size_t first, std::size_t count) const
+bool GeometryStages::makes_triangles() const
+{
+    if (d_.geometry_shader)
+        return d_.geometry_shader->output_topology() == GeometryOutput::TriangleStrip;
+    if (d_.hull_shader)
+        return d_.output_primitive == OutputPrimitive::TriangleCw ||
+               d_.output_primitive == OutputPrimitive::TriangleCcw;
+    int const n = vertices_per_primitive(call_.topology, call_.control_points);
+    return call_.topology != PrimitiveTopology::PatchList && (n == 3 || n == 6);
+}
+
+void GeometryStages::start(GeometryChunk& c, std::size_t first, std::size_t count)
 {
     c.first = first;
     c.count = count;
-    c.hull = c.domain = c.geometry = StageCounters{};
-    c.assembly = AssemblyCounters{};
-    c.factors_above_max = c.tessellated_points = c.tessellated_indices = 0;
+    c.counters = GeometryCounters{};
     c.primitives.clear();
-    if (d_.hull_shader)
-        shade_patches(c, primitives, shaded_vertices);
-    else
+}
+
+void GeometryStages::run(GeometryChunk& c, AssembledPrimitives const& primitives,
+                         float const* shaded_vertices, std::size_t first, std::size_t count) const
+{
+    start(c, first, count);
+    if (d_.hull_shader) {
+        hull_and_tessellate(c, primitives, shaded_vertices);
+        shade_patches(c);
+    } else {
         gather(c, primitives, shaded_vertices);
+    }
     if (d_.geometry_shader) run_geometry_shader(c);
 }
 
-void GeometryStages::shade_patches(GeometryChunk& c, AssembledPrimitives const& primitives,
-                                   float const* shaded_vertices) const
+void GeometryStages::hull_and_tessellate(GeometryChunk& c, AssembledPrimitives const& primitives,
+                                         float const* shaded_vertices) const
 {
     HullProgram const& hs = *d_.hull_shader;
-    DomainProgram const& ds = *d_.domain_shader;
-    std::size_t const point_floats = std::size_t(hs.control_points() * hs.control_point_floats());
-    std::size_t const constant_floats =
-        std::size_t(hs.patch_constants() * hs.patch_constant_floats());
-    c.control_points.resize(c.count * point_floats);
-    c.patch_constants.resize(c.count * constant_floats);
+    c.control_points.resize(c.count * std::size_t(hs.control_points() * hs.control_point_floats()));
+    c.patch_constants.resize(c.count *
+                             std::size_t(hs.patch_constants() * hs.patch_constant_floats()));
     c.factors.resize(c.count);
     auto const n = std::size_t(call_.control_points);
     hs.run({primitives.vertices.subspan(c.first * n, c.count * n), shaded_vertices,
             call_.control_points, std::uint32_t(c.first), c.count, c.control_points.data(),
             c.patch_constants.data(), c.factors.data()},
-           c.hull, hs_buffers_);
+           c.counters.hull, hs_buffers_);
     if (hs.max_tess_factor() < kMaxTessFactor)
         for (TessFactors& factors : c.factors)
             for (float& f : factors)
-                if (f > hs.max_tess_factor()) f = hs.max_tess_factor(), ++c.factors_above_max;
-
+                if (f > hs.max_tess_factor())
+                    f = hs.max_tess_factor(), ++c.counters.factors_above_max;
     c.patterns.resize(c.count);
-    c.first_point.resize(c.count);
-    std::size_t points = 0;
     TessellatorCache& cache = tessellator_cache();
     for (std::size_t p = 0; p < c.count; ++p) {
         c.patterns[p] = cache.find(c.factors[p]);
+        c.counters.tessellated_points += c.patterns[p]->patch.points();
+        c.counters.tessellated_indices += c.patterns[p]->patch.indices.size();
+    }
+}
+
+void GeometryStages::run_domain_shader(GeometryChunk& c, std::size_t p) const
+{
+    HullProgram const& hs = *d_.hull_shader;
+    DomainPoints const& d = *c.patterns[p];
+    d_.domain_shader->run(
+        {c.control_points.data() +
+             p * std::size_t(hs.control_points() * hs.control_point_floats()),
+         c.patch_constants.data() +
+             p * std::size_t(hs.patch_constants() * hs.patch_constant_floats()),
+         std::int32_t(c.first + p), d.u.data(), d.v.data(), d.patch.points(),
+         c.shaded.data() + c.first_point[p], c.stride},
+        hs.patch_constants(), c.counters.domain);
+}
+
+void GeometryStages::shade_patches(GeometryChunk& c) const
+{
+    c.first_point.resize(c.count);
+    std::size_t points = 0;
+    for (std::size_t p = 0; p < c.count; ++p) {
         c.first_point[p] = points;
         points += padded(c.patterns[p]->patch.points());
-        c.tessellated_points += c.patterns[p]->patch.points();
-        c.tessellated_indices += c.patterns[p]->patch.indices.size();
     }
     c.stride = points;
-    c.shaded.resize(points * std::size_t(ds.output_floats()));
-    StageScope const scope(c.domain, ds_buffers_, ds.seed());
-    for (std::size_t p = 0; p < c.count; ++p) {
-        DomainPoints const& d = *c.patterns[p];
-        ds.run({c.control_points.data() + p * point_floats,
-                c.patch_constants.data() + p * constant_floats, std::int32_t(c.first + p),
-                d.u.data(), d.v.data(), d.patch.points(), c.shaded.data() + c.first_point[p],
-                c.stride},
-               hs.patch_constants(), c.domain);
-    }
+    c.shaded.resize(points * std::size_t(d_.domain_shader->output_floats()));
+    StageScope const scope(c.counters.domain, ds_buffers_, d_.domain_shader->seed());
+    for (std::size_t p = 0; p < c.count; ++p) run_domain_shader(c, p);
+}
+
+void GeometryStages::shade_patch_alone(GeometryChunk& c, std::size_t p) const
+{
+    c.first_point.assign(c.count, 0);
+    c.stride = padded(c.patterns[p]->patch.points());
+    std::size_t const floats = c.stride * std::size_t(d_.domain_shader->output_floats());
+    if (c.shaded.size() < floats) c.shaded.resize(floats);
+    StageScope const scope(c.counters.domain, ds_buffers_, d_.domain_shader->seed());
+    run_domain_shader(c, p);
 }
 
 // Without tessellation: the vertex shader's outputs, all vertices of each primitive.
@@ -121,7 +157,8 @@ void GeometryStages::run_geometry_shader(GeometryChunk& c) const
     });
     c.gs.vertices.clear();
     c.gs.primitives.clear();
-    gs.run({c.shaded.data(), c.stride, index, ids}, c.gs, c.geometry, gs_buffers_);
+    gs.run({c.shaded.data(), c.stride, index, ids}, c.gs, c.counters.geometry, gs_buffers_);
+    c.counters.geometry_primitives = c.gs.primitives.size();
 
     // The rasterized stream's vertices take the place of the stage's inputs.
     int const stream = d_.stream_output ? d_.stream_output->rasterized_stream : 0;

@@ -12,6 +12,13 @@
 
 namespace tessemu {
 
+struct GeometryCounters {
+    StageCounters hull, domain, geometry;
+    AssemblyCounters assembly;
+    std::uint64_t tessellated_points = 0, tessellated_indices = 0, factors_above_max = 0;
+    std::uint64_t geometry_primitives = 0; ///< that the geometry shader emitted
+};
+
 /// A few primitives on their way. Memory is reused from wave to wave.
 struct GeometryChunk {
     std::size_t first = 0, count = 0; ///< input primitives
@@ -30,9 +37,7 @@ struct GeometryChunk {
     AssembledVertices assembled;
     std::vector<AssembledPrimitive> primitives;
 
-    StageCounters hull, domain, geometry;
-    AssemblyCounters assembly;
-    std::uint64_t tessellated_points = 0, tessellated_indices = 0, factors_above_max = 0;
+    GeometryCounters counters;
 };
 
 /// Runs hull shader, tessellator, domain shader and geometry shader over chunks, on any thread.
@@ -42,6 +47,21 @@ public:
 
     void run(GeometryChunk& chunk, AssembledPrimitives const& primitives,
              float const* shaded_vertices, std::size_t first, std::size_t count) const;
+
+    /// The same for tessellated patches without a geometry shader, one patch at a time:
+    /// patch(p) finds the points of patch p alone in chunk.shaded, so that they stay in the cache.
+    template <class Patch>
+    void run_by_patch(GeometryChunk& chunk, AssembledPrimitives const& primitives,
+                      float const* shaded_vertices, std::size_t first, std::size_t count,
+                      Patch&& patch) const
+    {
+        start(chunk, first, count);
+        hull_and_tessellate(chunk, primitives, shaded_vertices);
+        for (std::size_t p = 0; p < count; ++p) {
+            shade_patch_alone(chunk, p);
+            patch(p);
+        }
+    }
 
     /// work(v, n, primitive_id, viewport) for each primitive of n vertices that goes to the
     /// rasterizer, in order; v are columns of chunk.shaded.
@@ -64,6 +84,9 @@ public:
     void stream_out(GeometryChunk const& chunk, StreamOutput& out) const;
 
     OutputLayout output() const;
+    bool tessellates() const { return d_.hull_shader != nullptr; }
+    /// True if nothing but triangles reaches the rasterizer.
+    bool makes_triangles() const;
     StageBuffers const& hull_buffers() const { return hs_buffers_; }
     StageBuffers const& domain_buffers() const { return ds_buffers_; }
     StageBuffers const& geometry_buffers() const { return gs_buffers_; }
@@ -112,8 +135,12 @@ private:
         return t >= PrimitiveTopology::LineListAdj && t <= PrimitiveTopology::TriangleStripAdj;
     }
 
-    void shade_patches(GeometryChunk& c, AssembledPrimitives const& primitives,
-                       float const* shaded_vertices) const;
+    static void start(GeometryChunk& c, std::size_t first, std::size_t count);
+    void hull_and_tessellate(GeometryChunk& c, AssembledPrimitives const& primitives,
+                             float const* shaded_vertices) const;
+    void shade_patches(GeometryChunk& c) const;
+    void shade_patch_alone(GeometryChunk& c, std::size_t p) const;
+    void run_domain_shader(GeometryChunk& c, std::size_t p) const;
     void gather(GeometryChunk& c, AssembledPrimitives const& primitives,
                 float const* shaded_vertices) const;
     void run_geometry_shader(GeometryChunk& c) const;

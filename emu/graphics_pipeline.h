@@ -62,9 +62,25 @@ using PatchVisitor = std::function<void(ShadedPatch const&)>;
 /// Receives (done, all) primitives now and then.
 using DrawProgress = std::function<void(std::size_t, std::size_t)>;
 
+/// Working memory that draws reuse, one draw at a time; draws without it allocate their own.
+class DrawMemory {
+public:
+    DrawMemory();
+    ~DrawMemory();
+    DrawMemory(DrawMemory&&) noexcept;
+    DrawMemory& operator=(DrawMemory&&) noexcept;
+
+    struct Parts;
+    Parts& parts() { return *parts_; }
+
+private:
+    std::unique_ptr<Parts> parts_;
+};
+
 struct DrawOptions {
     VertexCacheModel vertex_cache = {};
     DrawProgress progress = {};
+    DrawMemory* memory = nullptr;
     std::span<StreamOutputBuffer> stream_output = {}; ///< at most 4; `filled` moves on
 };
 

@@ -24,6 +24,14 @@ void check_size(int width, int height, int samples)
         throw Error("samples is " + std::to_string(samples) + ", it must be 1, 2, 4 or 8");
 }
 
+// Rows lie an odd number of cache lines apart, so that a column of pixels does not fall into a few
+// sets of the cache.
+std::size_t pitch_of(int width, int height, int samples)
+{
+    check_size(width, height, samples);
+    return (std::size_t(width) * std::size_t(samples) + 15) / 16 * 16 | 16;
+}
+
 constexpr std::size_t kRowsPerPiece = 64;
 
 template <class Work> void for_each_row(int height, ThreadPool const& threads, Work const& work)
@@ -61,20 +69,27 @@ ColorTarget::ColorTarget(int width, int height, Format format, int samples)
       height_(height),
       samples_(samples),
       format_(format),
-      bytes_(info(format).bytes)
+      bytes_(info(format).bytes),
+      pitch_(pitch_of(width, height, samples)),
+      storage_(pitch_ * std::size_t(height) * bytes_)
 {
-    check_size(width, height, samples);
     if (info(format).type == FormatType::Depth)
         throw Error(std::string(info(format).name) + " is not a colour format");
-    storage_ = std::make_unique_for_overwrite<std::byte[]>(
-        std::size_t(width) * std::size_t(height) * std::size_t(samples) * bytes_);
 }
 
 void ColorTarget::clear(std::array<float, 4> const& color, ThreadPool const& threads)
 {
     std::byte texel_value[16];
     encode(format_, color, texel_value);
-    std::size_t const row = std::size_t(width_) * std::size_t(samples_) * bytes_;
+    std::size_t const row = row_bytes();
+    if (bytes_ == 4) {
+        std::uint32_t word;
+        std::memcpy(&word, texel_value, 4);
+        for_each_row(height_, threads, [&](int y) {
+            std::fill_n(reinterpret_cast<std::uint32_t*>(texel(0, y)), row / 4, word);
+        });
+        return;
+    }
     std::vector<std::byte> pattern(row);
     for (std::size_t i = 0; i < row; i += bytes_)
         std::memcpy(pattern.data() + i, texel_value, bytes_);
@@ -100,15 +115,14 @@ DepthTarget::DepthTarget(int width, int height, Format format, int samples)
     : width_(width),
       height_(height),
       samples_(samples),
-      format_(format)
+      format_(format),
+      pitch_(pitch_of(width, height, samples)),
+      depth_(pitch_ * std::size_t(height))
 {
-    check_size(width, height, samples);
     if (info(format).type != FormatType::Depth)
         throw Error(std::string(info(format).name) + " is not a depth format");
-    std::size_t const n = std::size_t(width) * std::size_t(height) * std::size_t(samples);
-    depth_ = std::make_unique_for_overwrite<std::uint32_t[]>(n);
     if (format == Format::D24_UNORM_S8_UINT || format == Format::D32_FLOAT_S8X24_UINT)
-        stencil_.resize(n);
+        stencil_.resize(pitch_ * std::size_t(height));
 }
 
 std::uint32_t DepthTarget::code(float z) const
@@ -125,7 +139,7 @@ std::uint32_t DepthTarget::code(float z) const
 
 float DepthTarget::depth(int x, int y, int s) const
 {
-    std::uint32_t const c = depth_[index(x, y, s)];
+    std::uint32_t const c = codes()[index(x, y, s)];
     switch (format_) {
     case Format::D16_UNORM:
         return float_from_unorm(c, 16);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "emu/formats.h"
+#include "emu/large_array.h"
 #include "emu/parallel.h"
 
 #include <algorithm>
@@ -150,13 +151,16 @@ public:
     int samples() const { return samples_; }
     Format format() const { return format_; }
     std::size_t texel_bytes() const { return bytes_; }
+    /// Bytes of a row's texels.
+    std::size_t row_bytes() const { return std::size_t(width_) * std::size_t(samples_) * bytes_; }
+    /// Texels from one row to the next: the same for all targets of a size.
+    std::size_t pitch() const { return pitch_; }
     /// Sample s of pixel (x, y); a row's texels follow each other, samples of a pixel too.
     std::byte* texel(int x, int y, int s = 0)
     {
-        return storage_.get() +
-               ((std::size_t(y) * std::size_t(width_) + std::size_t(x)) * std::size_t(samples_) +
-                std::size_t(s)) *
-                   bytes_;
+        return storage_.get() + (std::size_t(y) * pitch_ + std::size_t(x) * std::size_t(samples_) +
+                                 std::size_t(s)) *
+                                    bytes_;
     }
     std::byte const* texel(int x, int y, int s = 0) const
     {
@@ -172,8 +176,8 @@ public:
 private:
     int width_, height_, samples_;
     Format format_;
-    std::size_t bytes_;
-    std::unique_ptr<std::byte[]> storage_;
+    std::size_t bytes_, pitch_;
+    LargeArray<std::byte> storage_;
 };
 
 /// Averages the samples of every pixel, in linear space for sRGB (R116).
@@ -192,9 +196,9 @@ public:
     bool has_stencil() const { return !stencil_.empty(); }
     std::size_t index(int x, int y, int s = 0) const
     {
-        return (std::size_t(y) * std::size_t(width_) + std::size_t(x)) * std::size_t(samples_) +
-               std::size_t(s);
+        return std::size_t(y) * pitch_ + std::size_t(x) * std::size_t(samples_) + std::size_t(s);
     }
+    std::size_t pitch() const { return pitch_; } ///< codes from one row to the next
     std::uint32_t* codes() { return depth_.get(); }
     std::uint32_t const* codes() const { return depth_.get(); }
     std::uint8_t* stencil() { return stencil_.data(); }
@@ -207,7 +211,8 @@ public:
 private:
     int width_, height_, samples_;
     Format format_;
-    std::unique_ptr<std::uint32_t[]> depth_;
+    std::size_t pitch_;
+    LargeArray<std::uint32_t> depth_;
     std::vector<std::uint8_t> stencil_;
 };
 

@@ -453,6 +453,15 @@ std::shared_ptr<DomainPoints const> TessellatorCache::find(TessFactors const& fa
         points->u[i] = float(points->patch.u[k]) / float(kOne);
         points->v[i] = float(points->patch.v[k]) / float(kOne);
     }
+    if (state_.output == OutputPrimitive::TriangleCw ||
+        state_.output == OutputPrimitive::TriangleCcw) {
+        std::vector<std::uint32_t> const& index = points->patch.indices;
+        std::size_t const triangles = index.size() / 3;
+        for (std::size_t k = 0; k < 3; ++k) {
+            points->corner[k].assign((triangles + kPadding - 1) / kPadding * kPadding, 0);
+            for (std::size_t t = 0; t < triangles; ++t) points->corner[k][t] = index[3 * t + k];
+        }
+    }
     if (entries_.size() >= capacity_) entries_.clear();
     return entries_.emplace(key, std::move(points)).first->second;
 }

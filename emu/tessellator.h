@@ -87,6 +87,8 @@ struct DomainPoints {
     TessellatedPatch patch;
     std::vector<float> u,
         v; ///< exact; padded by a whole group of lanes that repeats the last point
+    /// Of triangle output: the indices by corner, padded to a whole group by degenerate triangles.
+    std::array<std::vector<std::uint32_t>, 3> corner;
 };
 
 /// Serves repeated factors. One per thread; holds at most `capacity` patterns.

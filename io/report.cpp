@@ -125,9 +125,10 @@ std::string draw_report(ReportHeader const& header, DrawStatistics const& statis
     Json j = start(header);
     add_statistics(j, statistics);
     return finish(std::move(j), header, [&](Sha256& hash) {
-        std::size_t const pixels = std::size_t(color.width()) * std::size_t(color.height());
-        hash.add(color.texel(0, 0), pixels * std::size_t(color.samples()) * color.texel_bytes());
-        hash.add(depth.codes(), pixels * std::size_t(depth.samples()) * sizeof(std::uint32_t));
+        for (int y = 0; y < color.height(); ++y) hash.add(color.texel(0, y), color.row_bytes());
+        std::size_t const codes = std::size_t(depth.width()) * std::size_t(depth.samples());
+        for (int y = 0; y < depth.height(); ++y)
+            hash.add(depth.codes() + depth.index(0, y), codes * sizeof(std::uint32_t));
     });
 }
 

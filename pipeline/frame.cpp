@@ -105,6 +105,7 @@ void draw_passes(PatchMesh const& mesh, FrameSettings const& s, RasterTarget con
     for (DrawPass const& pass : passes) {
         DrawOptions options;
         options.vertex_cache = s.vertex_cache;
+        options.memory = &frame.memory;
         if (progress)
             options.progress = [&](std::size_t n, std::size_t) { progress(done + n, all); };
         frame.statistics += draw(pass.pipeline, pass.call, &raster, {}, threads, options);

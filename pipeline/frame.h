@@ -42,6 +42,7 @@ struct Frame {
     DrawStatistics statistics;
     std::unique_ptr<ColorTarget> color_samples; ///< what is drawn to with several samples
     std::unique_ptr<CoverageCounts> coverage;   ///< of the coverage view
+    DrawMemory memory;
 
     /// Throws LimitError for targets that are too large.
     explicit Frame(FrameSettings const& settings);

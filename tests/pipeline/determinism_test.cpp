@@ -27,9 +27,11 @@ Bytes draw_bytes(PatchMesh const& patches, ControlMesh const& mesh, int threads,
     s.camera = frame_points(mesh.positions, {0.5f, 0.4f, 1}, 150.0f / 110);
     Frame const f = draw_frame(patches, s, ThreadPool(threads));
     Bytes out{{}, f.statistics};
-    std::size_t const pixels = 150 * 110;
-    out.pixels.append(reinterpret_cast<char const*>(f.color.texel(0, 0)), pixels * 4);
-    out.pixels.append(reinterpret_cast<char const*>(f.depth.codes()), pixels * 4);
+    for (int y = 0; y < s.height; ++y) {
+        out.pixels.append(reinterpret_cast<char const*>(f.color.texel(0, y)), f.color.row_bytes());
+        out.pixels.append(reinterpret_cast<char const*>(f.depth.codes() + f.depth.index(0, y)),
+                          150 * 4);
+    }
     return out;
 }
 

@@ -1,0 +1,96 @@
+// Lanes and memory: gather, compress, permute, by the instruction where the build has it (in its
+// masked form: g++ 12 warns about the plain one's unused source).
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/lanes.h"
+
+namespace tessemu {
+
+/// memory[index] per lane; all indices are in range.
+template <int N> IntLanes<N> gather(std::int32_t const* memory, IntLanes<N> index)
+{
+#if defined(__AVX512F__)
+    if constexpr (N == 16)
+        return typename IntLanes<N>::Raw(_mm512_mask_i32gather_epi32(
+            _mm512_setzero_si512(), __mmask16(-1), __m512i(index.raw), memory, 4));
+#endif
+#if defined(__AVX2__)
+    if constexpr (N == 8)
+        return typename IntLanes<N>::Raw(_mm256_i32gather_epi32(memory, __m256i(index.raw), 4));
+#endif
+    IntLanes<N> r;
+    for (int i = 0; i < N; ++i) r.raw[i] = memory[index.raw[i]];
+    return r;
+}
+template <int N> Lanes<N> gather(float const* memory, IntLanes<N> index)
+{
+    IntLanes<N> const r = gather<N>(reinterpret_cast<std::int32_t const*>(memory), index);
+    return typename Lanes<N>::Raw(r.raw);
+}
+
+/// The lanes whose bit is set, moved to the front in order. What follows them is unspecified.
+template <int N> IntLanes<N> compress(IntLanes<N> v, std::uint32_t bits)
+{
+#if defined(__AVX512F__)
+    if constexpr (N == 16)
+        return
+            typename IntLanes<N>::Raw(_mm512_maskz_compress_epi32(__mmask16(bits), __m512i(v.raw)));
+#endif
+    IntLanes<N> r(0);
+    int n = 0;
+    for (; bits; bits &= bits - 1) r.raw[n++] = v.raw[std::countr_zero(bits)];
+    return r;
+}
+template <int N> Lanes<N> compress(Lanes<N> v, std::uint32_t bits)
+{
+    using Int = typename IntLanes<N>::Raw;
+    return typename Lanes<N>::Raw(compress(IntLanes<N>(Int(v.raw)), bits).raw);
+}
+
+/// v[index] per lane, indices 0 to N-1.
+template <int N> IntLanes<N> permute(IntLanes<N> v, IntLanes<N> index)
+{
+#if defined(__AVX512F__)
+    if constexpr (N == 16)
+        return
+            typename IntLanes<N>::Raw(_mm512_maskz_permutexvar_epi32(
+                __mmask16(-1), __m512i(index.raw), __m512i(v.raw)));
+#endif
+#if defined(__AVX2__)
+    if constexpr (N == 8)
+        return typename IntLanes<N>::Raw(
+            _mm256_permutevar8x32_epi32(__m256i(v.raw), __m256i(index.raw)));
+#endif
+    IntLanes<N> r;
+    for (int i = 0; i < N; ++i) r.raw[i] = v.raw[index.raw[i]];
+    return r;
+}
+template <int N> Lanes<N> permute(Lanes<N> v, IntLanes<N> index)
+{
+    using Int = typename IntLanes<N>::Raw;
+    return typename Lanes<N>::Raw(permute(IntLanes<N>(Int(v.raw)), index).raw);
+}
+
+template <int N> IntLanes<N> load_lanes(std::int32_t const* p)
+{
+    IntLanes<N> r;
+    __builtin_memcpy(&r.raw, p, sizeof r.raw);
+    return r;
+}
+template <int N> void store_lanes(IntLanes<N> v, std::int32_t* p)
+{
+    __builtin_memcpy(p, &v.raw, sizeof v.raw);
+}
+
+template <int N> IntLanes<N> min(IntLanes<N> a, IntLanes<N> b)
+{
+    return select(a < b, a, b);
+}
+template <int N> IntLanes<N> max(IntLanes<N> a, IntLanes<N> b)
+{
+    return select(a > b, a, b);
+}
+
+} // namespace tessemu

@@ -1,0 +1,669 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emu/triangle_stream.h"
+
+#include "emu/lane_memory.h"
+
+#include <bit>
+#include <cassert>
+#include <cstring>
+
+namespace tessemu {
+
+// Fragment bins.
+
+void FragmentBins::reset(std::size_t tiles, bool wide_color)
+{
+    if (head_.size() != tiles) {
+        head_.assign(tiles, kNone);
+        tail_.assign(tiles, kNone);
+    }
+    for (std::uint32_t t : touched_) head_[t] = tail_[t] = kNone;
+    touched_.clear();
+    used_ = 0;
+    wide_color_ = wide_color;
+}
+
+FragmentBins::Block& FragmentBins::fresh_block(std::size_t tile)
+{
+    auto const fresh = std::uint32_t(used_++);
+    if (fresh == blocks_.size()) {
+        blocks_.emplace_back();
+        if (wide_color_) rest_.resize(blocks_.size() * 3 * kRow);
+    }
+    blocks_[fresh].count = 0;
+    blocks_[fresh].next = kNone;
+    if (tail_[tile] == kNone) {
+        head_[tile] = fresh;
+        touched_.push_back(std::uint32_t(tile));
+    } else {
+        blocks_[tail_[tile]].next = fresh;
+    }
+    tail_[tile] = fresh;
+    return blocks_[fresh];
+}
+
+std::uint64_t merge_fragments(RasterTarget const& target, FragmentBins const& bins,
+                              std::size_t tile)
+{
+    std::uint32_t* const codes = target.depth->codes();
+    auto* const pixels = reinterpret_cast<std::uint32_t*>(target.color[0]->texel(0, 0));
+    bool const or_equal = target.depth_stencil.depth_func == Comparison::LessEqual;
+    std::uint32_t const slack = or_equal ? 1 : 0; // a <= b is a < b + 1 in integers
+    std::uint64_t passed = 0;
+    constexpr std::uint32_t kAhead = 32;
+    bins.for_each_block(tile, [&](FragmentBins::Block const& b, std::uint32_t const* rest) {
+        std::uint32_t const count = b.count;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            std::size_t const next = b.texel[std::min(i + kAhead, count - 1)];
+            __builtin_prefetch(codes + next, 1);
+            __builtin_prefetch(pixels + (rest ? 4 * next : next), 1);
+            std::size_t const at = b.texel[i];
+            // Selects, not branches: whether a fragment passes is hard to predict.
+            std::uint32_t const stored = codes[at];
+            bool const pass = b.depth[i] < stored + slack;
+            std::uint32_t const mask = 0u - std::uint32_t(pass);
+            passed += pass;
+            codes[at] = stored ^ ((stored ^ b.depth[i]) & mask);
+            if (!rest) {
+                pixels[at] ^= (pixels[at] ^ b.color[i]) & mask;
+            } else {
+                std::uint32_t* const p = pixels + 4 * at;
+                p[0] ^= (p[0] ^ b.color[i]) & mask;
+                for (std::size_t k = 0; k < 3; ++k)
+                    p[k + 1] ^= (p[k + 1] ^ rest[k * FragmentBins::kRow + i]) & mask;
+            }
+        }
+    });
+    return passed;
+}
+
+// The stream.
+
+bool TriangleStream::supports(RasterSetup const& setup, bool triangles)
+{
+    RasterTarget const& t = setup.target;
+    if (!triangles || !setup.pixel_shader || t.samples() != 1 || t.coverage ||
+        t.color.size() != 1 || !t.color[0] || !t.depth || t.viewports.size() != 1)
+        return false;
+    PixelShaderInfo const& ps = setup.pixel_shader->info();
+    bool const pure = ps.features == 0 && !ps.writes_depth && !ps.writes_coverage && !ps.discards &&
+                      !ps.sample_frequency && ps.color_targets == 1;
+    RasterizerState const& r = t.rasterizer;
+    bool const plain = r.fill == FillMode::Solid && r.depth_bias == 0 &&
+                       r.slope_scaled_depth_bias == 0 && setup.layout.clip_distances == 0 &&
+                       setup.layout.cull_distances == 0;
+    DepthStencilState const& d = t.depth_stencil;
+    bool const depth = d.depth_enable && d.depth_write && !t.depth_read_only && !d.stencil_enable &&
+                       t.depth->format() == Format::D32_FLOAT &&
+                       (d.depth_func == Comparison::Less || d.depth_func == Comparison::LessEqual);
+    BlendState const& b = t.blend;
+    Format const f = t.color[0]->format();
+    bool const overwritten = !b.alpha_to_coverage && !b.target[0].enable &&
+                             b.target[0].write_mask == 0xf && (b.sample_mask & 1);
+    return pure && plain && depth && overwritten &&
+           (f == Format::R8G8B8A8_UNORM || f == Format::R32G32B32A32_FLOAT);
+}
+
+TriangleStream::TriangleStream(RasterSetup const& setup, PrimitiveAssembler const& assembler,
+                               int tiles_x, int tiles_y)
+    : setup_(setup),
+      assembler_(assembler),
+      tiles_x_(tiles_x),
+      tiles_y_(tiles_y),
+      pitch_(int(setup.target.depth->pitch())),
+      attributes_(setup.pixel_shader->input_floats()),
+      bounds_(setup.bounds[0]),
+      wide_color_(setup.target.color[0]->format() == Format::R32G32B32A32_FLOAT),
+      cull_front_(assembler.state().cull == CullMode::Front),
+      cull_back_(assembler.state().cull == CullMode::Back),
+      modes_(setup.pixel_shader->info().interpolation),
+      table_((std::size_t(kAttributes) + 3 * std::size_t(attributes_)) * kTableRow),
+      zeros_{},
+      attribute_storage_(std::size_t(attributes_) * kShadeRow)
+{
+    std::fill_n(ones_, kShadeRow, 1);
+    for (int k = 0; k < attributes_; ++k)
+        attribute_rows_.push_back(attribute_storage_.data() + std::size_t(k) * kShadeRow);
+    for (int k = 0; k < 4; ++k) color_rows_[k] = color_[k];
+}
+
+void TriangleStream::begin(AssembledVertices& vertices, FragmentBins& bins)
+{
+    vertices_ = &vertices;
+    bins_ = &bins;
+    fragments_ = 0;
+    bins.reset(std::size_t(tiles_x_ * tiles_y_), wide_color_);
+}
+
+void TriangleStream::add_patch(DomainPoints const& pattern, std::int32_t primitive_id,
+                               AssemblyCounters& counters)
+{
+    std::size_t const points = pattern.patch.points(), triangles = pattern.patch.indices.size() / 3;
+    if (triangles == 0) return;
+    AssembledVertices const& vs = *vertices_;
+    I min_x(0x7fffffff), min_y(0x7fffffff), max_x(-0x7fffffff), max_y(-0x7fffffff);
+    unsigned codes = 0;
+    std::size_t const padded = (points + 15) / 16 * 16;
+    I const lane = I::iota(), last(std::int32_t(points - 1));
+    for (std::size_t i = 0; i < points; i += std::size_t(N)) {
+        // Past the last point lies padding: those lanes repeat it.
+        I const at = min(lane + I(std::int32_t(i)), last);
+        I const x = i + std::size_t(N) <= points ? load_lanes<N>(vs.x.data() + i)
+                                                 : gather(vs.x.data(), at);
+        I const y = i + std::size_t(N) <= points ? load_lanes<N>(vs.y.data() + i)
+                                                 : gather(vs.y.data(), at);
+        min_x = min(min_x, x), max_x = max(max_x, x);
+        min_y = min(min_y, y), max_y = max(max_y, y);
+    }
+    for (std::size_t i = 0; i < points; ++i) codes |= vs.outcode[i];
+    std::int32_t low_x = min_x.raw[0], high_x = max_x.raw[0], low_y = min_y.raw[0],
+                 high_y = max_y.raw[0];
+    for (int l = 1; l < N; ++l) {
+        low_x = std::min(low_x, min_x.raw[l]), high_x = std::max(high_x, max_x.raw[l]);
+        low_y = std::min(low_y, min_y.raw[l]), high_y = std::max(high_y, max_y.raw[l]);
+    }
+    origin_x_ = low_x >> 8;
+    origin_y_ = low_y >> 8;
+    bool const fits = (high_x >> 8) - origin_x_ < kMaxPatchPixels &&
+                      (high_y >> 8) - origin_y_ < kMaxPatchPixels;
+    // A pixel whose centre lies on the right or bottom bound is never covered.
+    bool const inside = origin_x_ >= bounds_.left && origin_y_ >= bounds_.top &&
+                        (high_x + 127) >> 8 <= bounds_.right &&
+                        (high_y + 127) >> 8 <= bounds_.bottom;
+    if (codes || !fits || !inside) {
+        for (std::size_t t = 0; t < triangles; ++t) {
+            std::uint32_t const v[3] = {pattern.corner[0][t], pattern.corner[1][t],
+                                        pattern.corner[2][t]};
+            add_triangle(v, primitive_id, counters);
+        }
+        return;
+    }
+    counters.clip_invocations += triangles;
+    counters.clip_primitives += triangles;
+    if (packed_.size() < padded) packed_.resize(padded);
+    I const ox(origin_x_ * 256), oy(origin_y_ * 256);
+    for (std::size_t i = 0; i < padded; i += std::size_t(N)) {
+        I const x = load_lanes<N>(vs.x.data() + i) - ox,
+                y = load_lanes<N>(vs.y.data() + i) - oy;
+        store_lanes(x | (y << I(16)), packed_.data() + i);
+    }
+    primitive_id_ = primitive_id;
+    auto const* const c0 = reinterpret_cast<std::int32_t const*>(pattern.corner[0].data());
+    auto const* const c1 = reinterpret_cast<std::int32_t const*>(pattern.corner[1].data());
+    auto const* const c2 = reinterpret_cast<std::int32_t const*>(pattern.corner[2].data());
+    for (std::size_t t = 0; t < triangles; t += std::size_t(N)) {
+        I const i0 = load_lanes<N>(c0 + t), i1 = load_lanes<N>(c1 + t), i2 = load_lanes<N>(c2 + t);
+        set_up(gather(packed_.data(), i0), gather(packed_.data(), i1), gather(packed_.data(), i2),
+               i0, i1, i2);
+    }
+    cover_survivors();
+}
+
+// Rejects what is culled or covers no pixel centre; keeps the rest in order.
+inline void TriangleStream::set_up(I v0, I v1, I v2, I i0, I i1, I i2)
+{
+    I const k16(16), mask(0xffff);
+    I const x0 = v0 & mask, x1 = v1 & mask, x2 = v2 & mask;
+    I const y0 = v0 >> k16, y1 = v1 >> k16, y2 = v2 >> k16;
+    I const dx1 = x1 - x0, dy1 = y1 - y0, dx2 = x2 - x0, dy2 = y2 - y0;
+    I const area = dx1 * dy2 - dx2 * dy1;
+    I const k8(8), up(127), down(-129);
+    I const left = (min(min(x0, x1), x2) + up) >> k8, top = (min(min(y0, y1), y2) + up) >> k8;
+    I const right = (max(max(x0, x1), x2) + down) >> k8,
+            bottom = (max(max(y0, y1), y2) + down) >> k8;
+    Mask<N> keep = (left <= right) & (top <= bottom) & (area != I(0));
+    Mask<N> const clockwise = area > I(0);
+    Mask<N> const front = assembler_.front_is_clockwise() ? clockwise : !clockwise;
+    if (cull_back_) keep = keep & front;
+    if (cull_front_) keep = keep & !front;
+    std::uint32_t const bits = keep.bits();
+    std::size_t const at = survivors_;
+    I const rows[7] = {v0,
+                       select(clockwise, v1, v2),
+                       select(clockwise, v2, v1),
+                       i0,
+                       select(clockwise, i1, i2),
+                       select(clockwise, i2, i1),
+                       I(I::Raw(front.raw))};
+    for (int k = 0; k < 7; ++k) store_lanes(compress(rows[k], bits), survivor_[k] + at);
+    survivors_ += std::size_t(std::popcount(bits));
+    if (survivors_ > kSurvivors - std::size_t(N)) cover_survivors();
+}
+
+namespace {
+
+// Pixel k of a 4x4 block as y << 16 | x.
+template <int N> IntLanes<N> block_offsets(int first)
+{
+    IntLanes<N> r;
+    for (int i = 0; i < N; ++i) r.raw[i] = ((first + i) >> 2) << 16 | ((first + i) & 3);
+    return r;
+}
+
+} // namespace
+
+// Queues the pixels of a 4x4 block whose bit is set; the entry is written in full and kept as far
+// as bits go.
+inline void TriangleStream::queue_block(std::int32_t corner, std::uint32_t mask,
+                                        std::int32_t triangle)
+{
+    for (int part = 0; part < 16; part += N) {
+        std::uint32_t const here = N == 16 ? mask : mask >> part & ((1u << (N & 15)) - 1);
+        store_lanes(I(corner) + compress(block_offsets<N>(part), here), queue_pixel_ + queued_);
+        store_lanes(I(triangle), queue_triangle_ + queued_);
+        queued_ += std::size_t(std::popcount(here));
+    }
+}
+
+void TriangleStream::cover_survivors()
+{
+    for (std::size_t first = 0; first < survivors_; first += std::size_t(N))
+        cover_group(first, int(std::min(std::size_t(N), survivors_ - first)));
+    finish_covered();
+    survivors_ = 0;
+}
+
+void TriangleStream::cover_group(std::size_t first, int count)
+{
+    if (queued_ + 16 * std::size_t(N) > kQueue) finish_covered();
+    I const v0 = load_lanes<N>(survivor_[0] + first), v1 = load_lanes<N>(survivor_[1] + first),
+            v2 = load_lanes<N>(survivor_[2] + first);
+    I const k16(16), low(0xffff), k8(8), up(127), down(-129);
+    I const x[3] = {v0 & low, v1 & low, v2 & low}, y[3] = {v0 >> k16, v1 >> k16, v2 >> k16};
+    I const left = (min(min(x[0], x[1]), x[2]) + up) >> k8,
+            top = (min(min(y[0], y[1]), y[2]) + up) >> k8;
+    I const right = (max(max(x[0], x[1]), x[2]) + down) >> k8,
+            bottom = (max(max(y[0], y[1]), y[2]) + down) >> k8;
+    std::uint32_t const valid = count == N ? Mask<N>(true).bits() : (1u << count) - 1;
+    // Edge i lies opposite vertex i; at the first pixel's centre, then stepped. Strict edges are
+    // moved by one unit, so that >= 0 holds for both kinds. 32 bits hold the values about boxes of up
+    // to 60 pixels.
+    I const cx = (left << k8) + I(128), cy = (top << k8) + I(128);
+    I e[3], step_x[3], step_y[3];
+    for (int i = 0; i < 3; ++i) {
+        int const a = (i + 1) % 3, b = (i + 2) % 3;
+        I const dx = x[b] - x[a], dy = y[b] - y[a];
+        Mask<N> const top_left = (dy < I(0)) | ((dy == I(0)) & (dx > I(0)));
+        e[i] = dx * (cy - y[a]) - dy * (cx - x[a]) - select(top_left, I(0), I(1));
+        step_x[i] = I(0) - (dy << k8);
+        step_y[i] = dx << k8;
+    }
+    I const columns = right - left, rows = bottom - top, corner = left | (top << k16);
+    std::uint32_t const larger = (max(columns, rows) >= I(4)).bits() & valid;
+    if (larger == 0) return cover_small(first, valid, corner, columns, rows, e, step_x, step_y);
+    std::uint32_t const huge = (max(columns, rows) >= I(60)).bits() & valid;
+    cover_blocks(first, count, huge, corner, columns, rows, e, step_x, step_y);
+}
+
+// Triangles within 4x4 pixels: a 16-bit mask each.
+inline void TriangleStream::cover_small(std::size_t first, std::uint32_t valid, I corner, I columns,
+                                        I rows, I (&e)[3], I const (&step_x)[3],
+                                        I const (&step_y)[3])
+{
+    std::uint32_t const wide = (columns >= I(1)).bits() & valid,
+                        tall = (rows >= I(1)).bits() & valid;
+    if ((wide | tall) == 0) { // one pixel each
+        std::uint32_t const covers = ((e[0] | e[1] | e[2]) >= I(0)).bits() & valid;
+        int const n = std::popcount(covers);
+        store_lanes(compress(corner, covers), queue_pixel_ + queued_);
+        store_lanes(I(std::int32_t(covered_)) + I::iota(), queue_triangle_ + queued_);
+        store_lanes(compress(I::iota() + I(std::int32_t(first)), covers),
+                    covered_survivor_ + covered_);
+        queued_ += std::size_t(n);
+        covered_ += std::size_t(n);
+        return;
+    }
+    // Pixels right of a box or below it are never inside its triangle.
+    int const last_column = (columns >= I(2)).bits() & valid ? 3 : 1,
+              last_row = (rows >= I(2)).bits() & valid ? 3 : 1;
+    I masks(0);
+    for (int r = 0; r <= last_row; ++r) {
+        I f[3] = {e[0], e[1], e[2]};
+        for (int c = 0; c <= last_column; ++c) {
+            I const outside = (f[0] | f[1] | f[2]) >> I(31);
+            masks = masks | ((I(1) & (outside ^ I(-1))) << I(4 * r + c));
+            for (int i = 0; i < 3; ++i) f[i] = f[i] + step_x[i];
+        }
+        for (int i = 0; i < 3; ++i) e[i] = e[i] + step_y[i];
+    }
+    std::int32_t mask[N], at[N];
+    store_lanes(masks, mask);
+    store_lanes(corner, at);
+    for (std::uint32_t bits = (masks != I(0)).bits() & valid; bits; bits &= bits - 1) {
+        int const l = std::countr_zero(bits);
+        covered_survivor_[covered_] = std::int32_t(first) + l;
+        queue_block(at[l], std::uint32_t(mask[l]), std::int32_t(covered_++));
+    }
+}
+
+// Larger ones: all blocks of all triangles in one loop, with selects for its bends.
+void TriangleStream::cover_blocks(std::size_t first, int count, std::uint32_t huge, I corner,
+                                  I columns, I rows, I const (&e)[3], I const (&step_x)[3],
+                                  I const (&step_y)[3])
+{
+    std::int32_t rows_of[12][N];
+    I const values[12] = {e[0],      e[1],      e[2],      step_x[0], step_x[1], step_x[2],
+                          step_y[0], step_y[1], step_y[2], corner,    columns,   rows};
+    for (int k = 0; k < 12; ++k) store_lanes(values[k], rows_of[k]);
+    constexpr int kParts = 16 / N;
+    I offset_x[kParts], offset_y[kParts];
+    for (int part = 0; part < kParts; ++part) {
+        I const o = block_offsets<N>(part * N);
+        offset_x[part] = o & I(0xffff);
+        offset_y[part] = o >> I(16);
+    }
+    for (int l = 0; l < count; ++l) {
+        if (huge >> l & 1) {
+            cover_huge(first + std::size_t(l));
+            continue;
+        }
+        I base[3][kParts];
+        for (int i = 0; i < 3; ++i)
+            for (int part = 0; part < kParts; ++part)
+                base[i][part] = I(rows_of[i][l]) + I(rows_of[3 + i][l]) * offset_x[part] +
+                                I(rows_of[6 + i][l]) * offset_y[part];
+        std::int32_t const last_x = rows_of[10][l], last_y = rows_of[11][l], at = rows_of[9][l];
+        int const blocks_x = (last_x >> 2) + 1, blocks = blocks_x * ((last_y >> 2) + 1);
+        if (queued_ + 16 * std::size_t(blocks) + 32 > kQueue) finish_covered();
+        std::size_t const before = queued_;
+        std::int32_t bx = 0, by = 0;
+        for (int b = 0; b < blocks; ++b) {
+            std::uint32_t mask = 0;
+            for (int part = 0; part < kParts; ++part) {
+                I outside(0);
+                for (int i = 0; i < 3; ++i)
+                    outside = outside | (base[i][part] + I(rows_of[3 + i][l] * bx +
+                                                           rows_of[6 + i][l] * by));
+                mask |= (outside >= I(0)).bits() << (part * N);
+            }
+            queue_block(at + (by << 16 | bx), mask, std::int32_t(covered_));
+            bx += 4;
+            bool const next_row = bx > last_x;
+            by += next_row ? 4 : 0;
+            bx = next_row ? 0 : bx;
+        }
+        covered_survivor_[covered_] = std::int32_t(first) + l;
+        covered_ += queued_ != before;
+    }
+}
+
+// A triangle whose edge values need 64 bits: pixel by pixel.
+void TriangleStream::cover_huge(std::size_t s)
+{
+    std::int32_t x[3], y[3];
+    for (int k = 0; k < 3; ++k) {
+        x[k] = survivor_[k][s] & 0xffff;
+        y[k] = survivor_[k][s] >> 16;
+    }
+    std::int64_t dx[3], dy[3], c[3];
+    for (int i = 0; i < 3; ++i) {
+        int const a = (i + 1) % 3, b = (i + 2) % 3;
+        dx[i] = x[b] - x[a];
+        dy[i] = y[b] - y[a];
+        bool const top_left = dy[i] < 0 || (dy[i] == 0 && dx[i] > 0);
+        c[i] = dx[i] * (128 - y[a]) - dy[i] * (128 - x[a]) - (top_left ? 0 : 1);
+    }
+    bool entered = false;
+    for (std::int32_t py = (std::min({y[0], y[1], y[2]}) + 127) >> 8;
+         py <= (std::max({y[0], y[1], y[2]}) - 129) >> 8; ++py)
+        for (std::int32_t px = (std::min({x[0], x[1], x[2]}) + 127) >> 8;
+             px <= (std::max({x[0], x[1], x[2]}) - 129) >> 8; ++px) {
+            bool in = true;
+            for (int i = 0; i < 3; ++i)
+                in = in && c[i] + dx[i] * 256 * py - dy[i] * 256 * px >= 0;
+            if (!in) continue;
+            if (queued_ + 32 > kQueue) {
+                finish_covered();
+                entered = false;
+            }
+            if (!entered) covered_survivor_[covered_++] = std::int32_t(s);
+            entered = true;
+            queue_pixel_[queued_] = py << 16 | px;
+            queue_triangle_[queued_++] = std::int32_t(covered_ - 1);
+        }
+}
+
+// The table of covered triangles, and the fragments that wait for it.
+void TriangleStream::finish_covered()
+{
+    if (queued_ == 0) return;
+    I const k16(16), low(0xffff), k8(8);
+    I const first_survivor(covered_survivor_[0]);
+    AssembledVertices const& vs = *vertices_;
+    for (std::size_t t = 0; t < covered_; t += std::size_t(N)) {
+        Mask<N> const live =
+            I::iota() < I(std::int32_t(std::min(std::size_t(N), covered_ - t)));
+        I const s = select(live, load_lanes<N>(covered_survivor_ + t), first_survivor);
+        I const v0 = gather(survivor_[0], s), v1 = gather(survivor_[1], s),
+                v2 = gather(survivor_[2], s);
+        I const x0 = v0 & low, x1 = v1 & low, x2 = v2 & low;
+        I const y0 = v0 >> k16, y1 = v1 >> k16, y2 = v2 >> k16;
+        // Edge functions over pixel numbers, exact modulo 2^32; inside the triangle they lie
+        // between 0 and its area, which fits. Edge 1 runs from vertex 2 to 0, edge 2 from 0 to 1.
+        auto const edge = [&](int r, I ax, I ay, I bx, I by) {
+            I const dx = bx - ax, dy = by - ay;
+            store_lanes(I(0) - (dy << k8), row(r) + t);
+            store_lanes(dx << k8, row(r + 1) + t);
+            store_lanes(dx * (I(128) - ay) - dy * (I(128) - ax), row(r + 2) + t);
+        };
+        edge(kA1, x2, y2, x0, y0);
+        edge(kA2, x0, y0, x1, y1);
+        I const area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
+        (F(1.0f) / F(area)).store(float_row(kInverse) + t);
+        store_lanes(gather(survivor_[6], s), row(kFront) + t);
+        I const id[3] = {gather(survivor_[3], s), gather(survivor_[4], s), gather(survivor_[5], s)};
+        auto const differences = [&](int r, float const* column) {
+            F const a = gather(column, id[0]), b = gather(column, id[1]), c = gather(column, id[2]);
+            a.store(float_row(r) + t);
+            (b - a).store(float_row(r + 1) + t);
+            (c - a).store(float_row(r + 2) + t);
+        };
+        differences(kZ, vs.z.data());
+        differences(kW, vs.inverse_w.data());
+        gather(vs.inverse_w.data(), id[1]).store(float_row(kW1) + t);
+        gather(vs.inverse_w.data(), id[2]).store(float_row(kW2) + t);
+        for (int k = 0; k < attributes_; ++k)
+            differences(kAttributes + 3 * k, vs.shaded + std::size_t(k + 4) * vs.stride);
+    }
+    interpolate();
+    queued_ = covered_ = 0;
+}
+
+// Fragments of covered triangles become inputs of the pixel shader. A group's fragments come from
+// at most N neighbouring rows of the table: one load and one permutation each.
+void TriangleStream::interpolate()
+{
+    for (std::size_t q = 0; q < queued_; q += std::size_t(N)) {
+        if (shaded_ + std::size_t(N) > kShade) shade();
+        std::size_t const n = std::min(std::size_t(N), queued_ - q);
+        I const pixel = load_lanes<N>(queue_pixel_ + q);
+        std::int32_t const base = queue_triangle_[q];
+        I index = load_lanes<N>(queue_triangle_ + q) - I(base);
+        if (n < std::size_t(N)) index = select(Mask<N>::first(int(n)), index, I(0));
+        auto const ints = [&](int r) { return permute(load_lanes<N>(row(r) + base), index); };
+        auto const floats = [&](int r) { return permute(F::load(float_row(r) + base), index); };
+        I const px = pixel & I(0xffff), py = pixel >> I(16);
+        I const e1 = ints(kA1) * px + ints(kB1) * py + ints(kC1);
+        I const e2 = ints(kA2) * px + ints(kB2) * py + ints(kC2);
+        F const inverse = floats(kInverse);
+        F const b1 = F(e1) * inverse, b2 = F(e2) * inverse;
+        F const z = floats(kZ) + (b1 * floats(kDz1) + b2 * floats(kDz2));
+        F const w = F(1.0f) / (floats(kW) + (b1 * floats(kDw1) + b2 * floats(kDw2)));
+        F const p1 = b1 * floats(kW1) * w, p2 = b2 * floats(kW2) * w;
+        std::size_t const at = shaded_;
+        for (int k = 0; k < attributes_; ++k) {
+            int const r = kAttributes + 3 * k;
+            float* const out = attribute_storage_.data() + std::size_t(k) * kShadeRow + at;
+            switch (modes_[std::size_t(k)]) {
+            case Interpolation::Constant:
+                floats(r).store(out);
+                break;
+            case Interpolation::LinearNoperspective:
+            case Interpolation::LinearNoperspectiveCentroid:
+                (floats(r) + (b1 * floats(r + 1) + b2 * floats(r + 2))).store(out);
+                break;
+            default:
+                (floats(r) + (p1 * floats(r + 1) + p2 * floats(r + 2))).store(out);
+            }
+        }
+        I const X = px + I(origin_x_), Y = py + I(origin_y_);
+        store_lanes(X, pixel_x_ + at);
+        store_lanes(Y, pixel_y_ + at);
+        store_lanes(I(primitive_id_), id_ + at);
+        store_lanes(ints(kFront), front_ + at);
+        (F(X) + F(0.5f)).store(position_[0] + at);
+        (F(Y) + F(0.5f)).store(position_[1] + at);
+        z.store(position_[2] + at);
+        w.store(position_[3] + at);
+        shaded_ += n;
+    }
+}
+
+void TriangleStream::add_triangle(std::uint32_t const* v, std::int32_t primitive_id,
+                                  AssemblyCounters& counters)
+{
+    assembled_.clear();
+    assembler_.assemble(*vertices_, v, 3, primitive_id, 0, counters, assembled_);
+    for (AssembledPrimitive const& p : assembled_) draw_assembled(p);
+}
+
+// A triangle alone, of any size, cut to the bounds: eight pixels of a row at a time in 64 bits.
+void TriangleStream::draw_assembled(AssembledPrimitive const& p)
+{
+    typedef std::int64_t I64 __attribute__((vector_size(64)));
+    using F8 = Lanes<8>;
+    AssembledVertices const& vs = *vertices_;
+    auto const& [a, b, c] = p.v;
+    std::int32_t const x[3] = {vs.x[a], vs.x[b], vs.x[c]}, y[3] = {vs.y[a], vs.y[b], vs.y[c]};
+    Rect const pixels = pixel_bounds(x, y).intersect(bounds_);
+    if (pixels.empty()) return;
+    std::int64_t e0[3], dx[3], dy[3], strict[3];
+    for (int i = 0; i < 3; ++i) {
+        int const from = (i + 1) % 3, to = (i + 2) % 3;
+        dx[i] = x[to] - x[from];
+        dy[i] = y[to] - y[from];
+        strict[i] = dy[i] < 0 || (dy[i] == 0 && dx[i] > 0) ? 0 : 1;
+        e0[i] = dx[i] * (pixels.top * 256 + 128 - std::int64_t(y[from])) -
+                dy[i] * (pixels.left * 256 + 128 - std::int64_t(x[from]));
+    }
+    std::int64_t const area = std::int64_t(x[1] - x[0]) * (y[2] - y[0]) -
+                              std::int64_t(x[2] - x[0]) * (y[1] - y[0]);
+    F8 const inverse(1.0f / float(area));
+    float const z0 = vs.z[a], dz1 = vs.z[b] - z0, dz2 = vs.z[c] - z0;
+    float const w0 = vs.inverse_w[a], w1 = vs.inverse_w[b], w2 = vs.inverse_w[c];
+    float const dw1 = w1 - w0, dw2 = w2 - w0;
+    constexpr I64 kRamp{0, 256, 512, 768, 1024, 1280, 1536, 1792};
+    for (int py = pixels.top; py < pixels.bottom; ++py)
+        for (int px = pixels.left; px < pixels.right; px += 8) {
+            I64 e[3], in = I64{} - 1;
+            for (int i = 0; i < 3; ++i) {
+                std::int64_t const here = e0[i] + dx[i] * 256 * (py - pixels.top) -
+                                          dy[i] * 256 * (px - pixels.left);
+                e[i] = here - dy[i] * kRamp;
+                in &= e[i] >= strict[i] + I64{};
+            }
+            std::uint32_t bits = 0;
+            for (int l = 0; l < 8; ++l) bits |= std::uint32_t(in[l] & 1) << l;
+            bits &= (1u << std::min(8, pixels.right - px)) - 1;
+            if (bits == 0) continue;
+            if (shaded_ + 8 > kShade) shade();
+            F8 const b1 = F8(__builtin_convertvector(e[1], F8::Raw)) * inverse,
+                     b2 = F8(__builtin_convertvector(e[2], F8::Raw)) * inverse;
+            F8 const z = F8(z0) + (b1 * F8(dz1) + b2 * F8(dz2));
+            F8 const w = F8(1.0f) / (F8(w0) + (b1 * F8(dw1) + b2 * F8(dw2)));
+            F8 const p1 = b1 * F8(w1) * w, p2 = b2 * F8(w2) * w;
+            std::size_t const at = shaded_;
+            compress(z, bits).store(position_[2] + at);
+            compress(w, bits).store(position_[3] + at);
+            for (int k = 0; k < attributes_; ++k) {
+                Interpolation const mode = modes_[std::size_t(k)];
+                float const a0 = vs.component(a, k + 4), da1 = vs.component(b, k + 4) - a0,
+                            da2 = vs.component(c, k + 4) - a0;
+                bool const flat = mode == Interpolation::LinearNoperspective ||
+                                  mode == Interpolation::LinearNoperspectiveCentroid;
+                F8 const v = mode == Interpolation::Constant
+                                 ? F8(vs.component(p.leading, k + 4))
+                             : flat ? F8(a0) + (b1 * F8(da1) + b2 * F8(da2))
+                                    : F8(a0) + (p1 * F8(da1) + p2 * F8(da2));
+                compress(v, bits).store(attribute_storage_.data() + std::size_t(k) * kShadeRow +
+                                        at);
+            }
+            for (std::size_t q = at; bits; bits &= bits - 1, ++q) {
+                int const l = std::countr_zero(bits);
+                pixel_x_[q] = px + l;
+                pixel_y_[q] = py;
+                id_[q] = p.primitive_id;
+                front_[q] = p.front_face ? -1 : 0;
+                position_[0][q] = float(px + l) + 0.5f;
+                position_[1][q] = float(py) + 0.5f;
+                shaded_ = q + 1;
+            }
+        }
+}
+
+// Runs the pixel shader and sorts the results into tiles.
+void TriangleStream::shade()
+{
+    if (shaded_ == 0) return;
+    FragmentBatch batch{};
+    batch.count = shaded_;
+    for (int k = 0; k < 4; ++k) batch.position[k] = position_[k];
+    batch.attributes = attribute_rows_.data();
+    batch.primitive_id = id_;
+    batch.front_face = front_;
+    batch.sample_index = zeros_;
+    batch.coverage = ones_;
+    batch.color = color_rows_;
+    setup_.pixel_shader->run(batch, discarded_, setup_.buffers);
+    fragments_ += shaded_;
+
+    Viewport const& viewport = setup_.target.viewports[0];
+    F const low(viewport.min_depth), high(viewport.max_depth);
+    for (std::size_t q = 0; q < shaded_; q += std::size_t(N)) {
+        int const n = int(std::min(std::size_t(N), shaded_ - q));
+        F const z = F::load(position_[2] + q);
+        F const clamped = select(z >= low, select(z <= high, z, high), low); // R135
+        I const depth = I(I::Raw(clamped.raw)) & I(0x7fffffff);
+        I const x = load_lanes<N>(pixel_x_ + q), y = load_lanes<N>(pixel_y_ + q);
+        I const shift(kTileShift);
+        I const texel = y * I(pitch_) + x;
+        I const tiles = (y >> shift) * I(tiles_x_) + (x >> shift);
+        I color[4];
+        if (wide_color_) {
+            for (int k = 0; k < 4; ++k) color[k] = I(I::Raw(F::load(color_[k] + q).raw));
+        } else {
+            // R21 in double, which is exact.
+            typedef double D __attribute__((vector_size(8 * N)));
+            color[0] = I(0);
+            for (int k = 0; k < 4; ++k) {
+                F const c = F::load(color_[k] + q);
+                F const in = select(c > F(0.0f), select(c < F(1.0f), c, F(1.0f)), F(0.0f));
+                D const scaled = __builtin_convertvector(in.raw, D) * 255.0 + 0.5;
+                color[0] = color[0] |
+                           (I(I::Raw(__builtin_convertvector(scaled, I::Raw))) << I(8 * k));
+            }
+        }
+        std::uint32_t rest = n == N ? Mask<N>(true).bits() : (1u << n) - 1;
+        while (rest) {
+            std::int32_t const t = tiles.raw[std::countr_zero(rest)];
+            std::uint32_t const here = (tiles == I(t)).bits() & rest;
+            if (here == rest && std::popcount(here) == n) {
+                bins_->append(std::size_t(t), n, texel, depth, color);
+                break;
+            }
+            I some[4];
+            for (int k = 0; k < (wide_color_ ? 4 : 1); ++k) some[k] = compress(color[k], here);
+            bins_->append(std::size_t(t), std::popcount(here), compress(texel, here),
+                          compress(depth, here), some);
+            rest &= ~here;
+        }
+    }
+    shaded_ = 0;
+}
+
+void TriangleStream::end()
+{
+    shade();
+}
+
+} // namespace tessemu

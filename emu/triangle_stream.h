@@ -1,0 +1,176 @@
+// Triangles in the common state, many at a time, to the bits that emu/rasterizer.h gives one by one.
+//
+// The common state: solid triangles, one sample, depth LESS or LESS_EQUAL in 32-bit float, one
+// colour target that is overwritten, a pixel shader of straight-line arithmetic. Such a shader has
+// no side effect and the same cost everywhere, so fragments may be shaded before their depth test;
+// what counts is what passes.
+//
+// On the geometry side: set-up and rejection with lanes over triangles, coverage in blocks of 4x4
+// pixels, attributes fetched once a covered triangle, fragments shaded in dense groups and sorted
+// into tiles. On the raster side, tile by tile: the depth test in submission order.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/rasterizer.h"
+#include "emu/tessellator.h"
+
+namespace tessemu {
+
+/// Shaded fragments of one chunk by tile, in submission order.
+class FragmentBins {
+public:
+    static constexpr int kBlock = 256 - 16, kRow = 256; // whole groups are written
+    struct Block {
+        std::uint32_t count = 0, next = 0xffffffffu;
+        std::uint32_t texel[kRow]; ///< y * pitch + x of the targets
+        std::uint32_t depth[kRow]; ///< code
+        std::uint32_t color[kRow]; ///< packed; or the red component, and the others in `rest`
+    };
+
+    void reset(std::size_t tiles, bool wide_color);
+    bool empty(std::size_t tile) const { return head_[tile] == kNone; }
+    /// Appends the first n fragments of a group of one tile.
+    /// \param color  packed; or four components
+    template <int N>
+    void append(std::size_t tile, int n, IntLanes<N> texel, IntLanes<N> depth,
+                IntLanes<N> const* color)
+    {
+        Block& block = block_for(tile, std::uint32_t(n));
+        __builtin_memcpy(block.texel + block.count, &texel.raw, sizeof texel.raw);
+        __builtin_memcpy(block.depth + block.count, &depth.raw, sizeof depth.raw);
+        __builtin_memcpy(block.color + block.count, &color[0].raw, sizeof color[0].raw);
+        if (wide_color_) {
+            std::size_t const b = std::size_t(&block - blocks_.data());
+            for (std::size_t k = 0; k < 3; ++k)
+                __builtin_memcpy(rest_.data() + (b * 3 + k) * kRow + block.count,
+                                 &color[k + 1].raw, sizeof color[0].raw);
+        }
+        block.count += std::uint32_t(n);
+    }
+
+    /// Asks for a tile's first block to be brought near.
+    void prefetch(std::size_t tile) const
+    {
+        if (head_[tile] != kNone) prefetch_block(head_[tile]);
+    }
+
+    template <class Work> void for_each_block(std::size_t tile, Work&& work) const
+    {
+        for (std::uint32_t b = head_[tile]; b != kNone; b = blocks_[b].next) {
+            if (blocks_[b].next != kNone) prefetch_block(blocks_[b].next);
+            work(blocks_[b], wide_color_ ? rest_.data() + std::size_t(b) * 3 * kRow : nullptr);
+        }
+    }
+
+private:
+    Block& block_for(std::size_t tile, std::uint32_t n)
+    {
+        std::uint32_t const b = tail_[tile];
+        if (b != kNone && blocks_[b].count + n <= kBlock) return blocks_[b];
+        return fresh_block(tile);
+    }
+    Block& fresh_block(std::size_t tile);
+    void prefetch_block(std::uint32_t b) const
+    {
+        auto const* const p = reinterpret_cast<char const*>(&blocks_[b]);
+        for (std::size_t at = 0; at < sizeof(Block); at += 64) __builtin_prefetch(p + at);
+    }
+
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    std::vector<std::uint32_t> head_, tail_;
+    std::vector<std::uint32_t> touched_;
+    std::vector<Block> blocks_;
+    std::vector<std::uint32_t> rest_;
+    std::size_t used_ = 0;
+    bool wide_color_ = false;
+};
+
+/// What a thread needs to turn a chunk's triangles into fragments; reused from chunk to chunk.
+class TriangleStream {
+public:
+    /// True if draws in this state may take this way.
+    static bool supports(RasterSetup const& setup, bool triangles);
+
+    /// \param tiles_x  tiles in a row of the target
+    TriangleStream(RasterSetup const& setup, PrimitiveAssembler const& assembler, int tiles_x,
+                   int tiles_y);
+
+    /// Starts a chunk whose fragments go to `bins`.
+    void begin(AssembledVertices& vertices, FragmentBins& bins);
+    /// All triangles of a tessellated patch, whose points are the vertices.
+    void add_patch(DomainPoints const& pattern, std::int32_t primitive_id,
+                   AssemblyCounters& counters);
+    /// One triangle of any kind.
+    void add_triangle(std::uint32_t const* v, std::int32_t primitive_id,
+                      AssemblyCounters& counters);
+    void end();
+
+    /// Fragments of the chunk that ended.
+    std::uint64_t fragments() const { return fragments_; }
+
+private:
+    static constexpr int N = kNativeLanes;
+    using F = Lanes<N>;
+    using I = IntLanes<N>;
+    // A triangle of the widest block grid, 15 x 15, must fit the queue.
+    static constexpr std::size_t kSurvivors = 512, kQueue = 4096, kShade = 512;
+    static constexpr std::size_t kShadeRow = kShade + 16, kTableRow = kSurvivors + 32;
+    static constexpr int kMaxPatchPixels = 126; // 16-bit 8.8 numbers hold a patch
+    // Rows of the covered triangles' table.
+    enum Row { kA1, kB1, kC1, kA2, kB2, kC2, kFront, kId, kInverse, kZ, kDz1, kDz2, kW, kDw1,
+               kDw2, kW1, kW2, kAttributes };
+
+    void set_up(I v0, I v1, I v2, I i0, I i1, I i2);
+    void cover_survivors();
+    void cover_group(std::size_t first, int count);
+    void cover_small(std::size_t first, std::uint32_t valid, I corner, I columns, I rows, I (&e)[3],
+                     I const (&step_x)[3], I const (&step_y)[3]);
+    void cover_blocks(std::size_t first, int count, std::uint32_t huge, I corner, I columns, I rows,
+                      I const (&e)[3], I const (&step_x)[3], I const (&step_y)[3]);
+    void cover_huge(std::size_t survivor);
+    void queue_block(std::int32_t corner, std::uint32_t mask, std::int32_t triangle);
+    void finish_covered();
+    void interpolate();
+    void draw_assembled(AssembledPrimitive const& p);
+    void shade();
+    std::int32_t* row(int r) { return table_.data() + std::size_t(r) * kTableRow; }
+    float* float_row(int r) { return reinterpret_cast<float*>(row(r)); }
+
+    RasterSetup const& setup_;
+    PrimitiveAssembler const& assembler_;
+    int tiles_x_, tiles_y_, pitch_, attributes_;
+    Rect bounds_;
+    bool wide_color_, cull_front_, cull_back_;
+    std::vector<Interpolation> modes_;
+    AssembledVertices* vertices_ = nullptr;
+    FragmentBins* bins_ = nullptr;
+    StageCounters discarded_; // what shading before the test counted
+    std::uint64_t fragments_ = 0;
+
+    // A patch: packed positions relative to its origin, and what identifies it.
+    std::vector<std::int32_t> packed_;
+    std::int32_t origin_x_ = 0, origin_y_ = 0, primitive_id_ = 0;
+    std::vector<AssembledPrimitive> assembled_;
+
+    std::size_t survivors_ = 0;
+    std::int32_t survivor_[7][kSurvivors + 32]; // packed corners, vertex ids, front
+    std::size_t covered_ = 0; // of the survivors; at most kSurvivors between two finish_covered()
+    std::vector<std::int32_t> table_;
+    std::int32_t covered_survivor_[kTableRow];
+    std::size_t queued_ = 0;
+    std::int32_t queue_pixel_[kQueue + 32], queue_triangle_[kQueue + 32]; // y << 16 | x
+    std::size_t shaded_ = 0;
+    std::int32_t pixel_x_[kShadeRow], pixel_y_[kShadeRow], id_[kShadeRow], front_[kShadeRow],
+        zeros_[kShadeRow], ones_[kShadeRow];
+    float position_[4][kShadeRow], color_[4][kShadeRow];
+    std::vector<float> attribute_storage_;
+    std::vector<float const*> attribute_rows_;
+    float* color_rows_[4];
+};
+
+/// The depth test of a tile's fragments, in order. Returns how many passed.
+std::uint64_t merge_fragments(RasterTarget const& target, FragmentBins const& bins,
+                              std::size_t tile);
+
+} // namespace tessemu
