@@ -82,11 +82,10 @@ public:
     void assemble(GeometryStages const& stages, Chunk& c) const
     {
         assembler_.project(c.shaded.data(), c.stride, c.stride, c.gs_viewport, c.assembled);
-        stages.for_each_primitive(
-            c, [&](std::uint32_t const* v, int n, std::int32_t id, std::uint8_t viewport) {
-                assembler_.assemble(c.assembled, v, n, id, viewport, c.counters.assembly,
-                                    c.primitives);
-            });
+        stages.for_each_primitive(c, [&](std::uint32_t const* v, int n, std::int32_t id,
+                                         std::uint8_t viewport) {
+            assembler_.assemble(c.assembled, v, n, id, viewport, c.counters.assembly, c.primitives);
+        });
         bin(c);
     }
 
@@ -100,7 +99,8 @@ public:
         w.stream->begin(c.assembled, slot.fragments);
         if (stages.tessellates()) {
             stages.run_by_patch(c, primitives, shaded_vertices, first, count, [&](std::size_t p) {
-                assembler_.project(c.shaded.data(), c.stride, c.stride, {}, c.assembled);
+                std::size_t const points = (c.patterns[p]->patch.points() + 15) / 16 * 16;
+                assembler_.project(c.shaded.data(), c.stride, points, {}, c.assembled);
                 w.stream->add_patch(*c.patterns[p], std::int32_t(first + p), c.counters.assembly);
             });
         } else {
@@ -325,10 +325,10 @@ private:
 
     static std::size_t next_wave(std::size_t chunks, std::uint64_t fragments)
     {
-        std::uint64_t const fit = chunks * kFragmentsPerWave / std::max<std::uint64_t>(1, fragments);
-        return std::size_t(std::clamp<std::uint64_t>(fit, kChunksPerWave,
-                                                     std::min(4 * chunks + kChunksPerWave,
-                                                              kMostChunksPerWave)));
+        std::uint64_t const fit =
+            chunks * kFragmentsPerWave / std::max<std::uint64_t>(1, fragments);
+        return std::size_t(std::clamp<std::uint64_t>(
+            fit, kChunksPerWave, std::min(4 * chunks + kChunksPerWave, kMostChunksPerWave)));
     }
 
     // The cache decides which vertices run, and run again after a miss. They run in blocks; a

@@ -99,8 +99,7 @@ void GeometryStages::run_domain_shader(GeometryChunk& c, std::size_t p) const
     HullProgram const& hs = *d_.hull_shader;
     DomainPoints const& d = *c.patterns[p];
     d_.domain_shader->run(
-        {c.control_points.data() +
-             p * std::size_t(hs.control_points() * hs.control_point_floats()),
+        {c.control_points.data() + p * std::size_t(hs.control_points() * hs.control_point_floats()),
          c.patch_constants.data() +
              p * std::size_t(hs.patch_constants() * hs.patch_constant_floats()),
          std::int32_t(c.first + p), d.u.data(), d.v.data(), d.patch.points(),
@@ -125,7 +124,8 @@ void GeometryStages::shade_patches(GeometryChunk& c) const
 void GeometryStages::shade_patch_alone(GeometryChunk& c, std::size_t p) const
 {
     c.first_point.assign(c.count, 0);
-    c.stride = padded(c.patterns[p]->patch.points());
+    // An odd number of cache lines from row to row, so that rows do not share sets of the cache.
+    c.stride = padded(c.patterns[p]->patch.points()) | kPadding;
     std::size_t const floats = c.stride * std::size_t(d_.domain_shader->output_floats());
     if (c.shaded.size() < floats) c.shaded.resize(floats);
     StageScope const scope(c.counters.domain, ds_buffers_, d_.domain_shader->seed());

@@ -158,9 +158,9 @@ public:
     /// Sample s of pixel (x, y); a row's texels follow each other, samples of a pixel too.
     std::byte* texel(int x, int y, int s = 0)
     {
-        return storage_.get() + (std::size_t(y) * pitch_ + std::size_t(x) * std::size_t(samples_) +
-                                 std::size_t(s)) *
-                                    bytes_;
+        return storage_.get() +
+               (std::size_t(y) * pitch_ + std::size_t(x) * std::size_t(samples_) + std::size_t(s)) *
+                   bytes_;
     }
     std::byte const* texel(int x, int y, int s = 0) const
     {

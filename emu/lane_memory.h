@@ -54,9 +54,8 @@ template <int N> IntLanes<N> permute(IntLanes<N> v, IntLanes<N> index)
 {
 #if defined(__AVX512F__)
     if constexpr (N == 16)
-        return
-            typename IntLanes<N>::Raw(_mm512_maskz_permutexvar_epi32(
-                __mmask16(-1), __m512i(index.raw), __m512i(v.raw)));
+        return typename IntLanes<N>::Raw(
+            _mm512_maskz_permutexvar_epi32(__mmask16(-1), __m512i(index.raw), __m512i(v.raw)));
 #endif
 #if defined(__AVX2__)
     if constexpr (N == 8)
@@ -73,6 +72,50 @@ template <int N> Lanes<N> permute(Lanes<N> v, IntLanes<N> index)
     return typename Lanes<N>::Raw(permute(IntLanes<N>(Int(v.raw)), index).raw);
 }
 
+/// Lane i takes element index[i] of a and b laid end to end.
+template <int N> IntLanes<N> permute2(IntLanes<N> a, IntLanes<N> b, IntLanes<N> index)
+{
+#if defined(__AVX512F__)
+    if constexpr (N == 16)
+        return typename IntLanes<N>::Raw(
+            _mm512_permutex2var_epi32(__m512i(a.raw), __m512i(index.raw), __m512i(b.raw)));
+#endif
+    return select(index < IntLanes<N>(N), permute(a, index & IntLanes<N>(N - 1)),
+                  permute(b, index & IntLanes<N>(N - 1)));
+}
+
+/// Bytes as lanes.
+template <int N> IntLanes<N> load_bytes(std::uint8_t const* p)
+{
+#if defined(__AVX512F__)
+    if constexpr (N == 16)
+        return typename IntLanes<N>::Raw(_mm512_maskz_cvtepu8_epi32(
+            __mmask16(-1), _mm_loadu_si128(reinterpret_cast<__m128i const*>(p))));
+#endif
+#if defined(__AVX2__)
+    if constexpr (N == 8)
+        return typename IntLanes<N>::Raw(
+            _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<__m128i const*>(p))));
+#endif
+    typedef std::uint8_t Bytes __attribute__((vector_size(N)));
+    Bytes b;
+    __builtin_memcpy(&b, p, N);
+    return __builtin_convertvector(b, typename IntLanes<N>::Raw);
+}
+
+/// The low byte of each lane.
+template <int N> void store_bytes(IntLanes<N> v, std::uint8_t* p)
+{
+#if defined(__AVX512F__)
+    if constexpr (N == 16)
+        return _mm_storeu_si128(reinterpret_cast<__m128i*>(p),
+                                _mm512_maskz_cvtepi32_epi8(__mmask16(-1), __m512i(v.raw)));
+#endif
+    typedef std::uint8_t Bytes __attribute__((vector_size(N)));
+    Bytes const b = __builtin_convertvector(v.raw, Bytes);
+    __builtin_memcpy(p, &b, N);
+}
+
 template <int N> IntLanes<N> load_lanes(std::int32_t const* p)
 {
     IntLanes<N> r;
@@ -86,11 +129,11 @@ template <int N> void store_lanes(IntLanes<N> v, std::int32_t* p)
 
 template <int N> IntLanes<N> min(IntLanes<N> a, IntLanes<N> b)
 {
-    return select(a < b, a, b);
+    return typename IntLanes<N>::Raw(a.raw < b.raw ? a.raw : b.raw);
 }
 template <int N> IntLanes<N> max(IntLanes<N> a, IntLanes<N> b)
 {
-    return select(a > b, a, b);
+    return typename IntLanes<N>::Raw(a.raw > b.raw ? a.raw : b.raw);
 }
 
 } // namespace tessemu

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/primitive_assembly.h"
 
-#include "emu/lanes.h"
+#include "emu/lane_memory.h"
 
 #include <bit>
 #include <cassert>
@@ -45,13 +45,6 @@ template <class T> Projected<T> through_viewport(ViewportTransform const& t, T x
             y * inverse_w * T(t.scale_y) + T(t.offset_y),
             z * inverse_w * T(t.scale_z) + T(t.offset_z) + T(0.0f), // -0 becomes 0
             inverse_w};
-}
-
-void store_bytes(I v, std::uint8_t* out)
-{
-    typedef std::uint8_t Bytes __attribute__((vector_size(N)));
-    Bytes const b = __builtin_convertvector(v.raw, Bytes);
-    __builtin_memcpy(out, &b, N);
 }
 
 void project_group(ViewportTransform const& t, float const* shaded, std::size_t stride,

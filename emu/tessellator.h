@@ -89,6 +89,17 @@ struct DomainPoints {
         v; ///< exact; padded by a whole group of lanes that repeats the last point
     /// Of triangle output: the indices by corner, padded to a whole group by degenerate triangles.
     std::array<std::vector<std::uint32_t>, 3> corner;
+
+    /// How a group of kLanes triangles finds its corners among two runs of kLanes points each,
+    /// which most groups of a ring do: corner k of triangle i is point place[k][i] of the runs, or
+    /// `gather` is set.
+    template <int kLanes> struct Strip {
+        std::uint32_t run[2];
+        bool gather;
+        std::uint8_t place[3][kLanes];
+    };
+    std::vector<Strip<16>> strips16;
+    std::vector<Strip<8>> strips8;
 };
 
 /// Serves repeated factors. One per thread; holds at most `capacity` patterns.

@@ -50,29 +50,35 @@ std::uint64_t merge_fragments(RasterTarget const& target, FragmentBins const& bi
     bool const or_equal = target.depth_stencil.depth_func == Comparison::LessEqual;
     std::uint32_t const slack = or_equal ? 1 : 0; // a <= b is a < b + 1 in integers
     std::uint64_t passed = 0;
-    constexpr std::uint32_t kAhead = 32;
+    // Selects, not branches: whether a fragment passes is hard to predict.
+    auto const merge = [&](FragmentBins::Block const& b, std::uint32_t const* rest,
+                           std::uint32_t i) {
+        std::size_t const at = b.texel[i];
+        std::uint32_t const stored = codes[at], z = b.depth[i];
+        bool const pass = z < stored + slack;
+        passed += pass;
+        codes[at] = pass ? z : stored;
+        if (!rest) {
+            std::uint32_t const old = pixels[at], fresh = b.color[i];
+            pixels[at] = pass ? fresh : old;
+            return;
+        }
+        std::uint32_t* const p = pixels + 4 * at;
+        p[0] = pass ? b.color[i] : p[0];
+        for (std::size_t k = 0; k < 3; ++k)
+            p[k + 1] = pass ? rest[k * FragmentBins::kRow + i] : p[k + 1];
+    };
+    constexpr std::uint32_t kAhead = 32, kStep = 4; // a step is a row of a 4x4 block at most
     bins.for_each_block(tile, [&](FragmentBins::Block const& b, std::uint32_t const* rest) {
         std::uint32_t const count = b.count;
-        for (std::uint32_t i = 0; i < count; ++i) {
+        std::uint32_t i = 0;
+        for (; i + kStep <= count; i += kStep) {
             std::size_t const next = b.texel[std::min(i + kAhead, count - 1)];
             __builtin_prefetch(codes + next, 1);
             __builtin_prefetch(pixels + (rest ? 4 * next : next), 1);
-            std::size_t const at = b.texel[i];
-            // Selects, not branches: whether a fragment passes is hard to predict.
-            std::uint32_t const stored = codes[at];
-            bool const pass = b.depth[i] < stored + slack;
-            std::uint32_t const mask = 0u - std::uint32_t(pass);
-            passed += pass;
-            codes[at] = stored ^ ((stored ^ b.depth[i]) & mask);
-            if (!rest) {
-                pixels[at] ^= (pixels[at] ^ b.color[i]) & mask;
-            } else {
-                std::uint32_t* const p = pixels + 4 * at;
-                p[0] ^= (p[0] ^ b.color[i]) & mask;
-                for (std::size_t k = 0; k < 3; ++k)
-                    p[k + 1] ^= (p[k + 1] ^ rest[k * FragmentBins::kRow + i]) & mask;
-            }
+            for (std::uint32_t k = 0; k < kStep; ++k) merge(b, rest, i + k);
         }
+        for (; i < count; ++i) merge(b, rest, i);
     });
     return passed;
 }
@@ -114,8 +120,10 @@ TriangleStream::TriangleStream(RasterSetup const& setup, PrimitiveAssembler cons
       attributes_(setup.pixel_shader->input_floats()),
       bounds_(setup.bounds[0]),
       wide_color_(setup.target.color[0]->format() == Format::R32G32B32A32_FLOAT),
-      cull_front_(assembler.state().cull == CullMode::Front),
-      cull_back_(assembler.state().cull == CullMode::Back),
+      cull_clockwise_(assembler.state().cull ==
+                      (assembler.front_is_clockwise() ? CullMode::Front : CullMode::Back)),
+      cull_counter_clockwise_(assembler.state().cull ==
+                              (assembler.front_is_clockwise() ? CullMode::Back : CullMode::Front)),
       modes_(setup.pixel_shader->info().interpolation),
       table_((std::size_t(kAttributes) + 3 * std::size_t(attributes_)) * kTableRow),
       zeros_{},
@@ -148,10 +156,10 @@ void TriangleStream::add_patch(DomainPoints const& pattern, std::int32_t primiti
     for (std::size_t i = 0; i < points; i += std::size_t(N)) {
         // Past the last point lies padding: those lanes repeat it.
         I const at = min(lane + I(std::int32_t(i)), last);
-        I const x = i + std::size_t(N) <= points ? load_lanes<N>(vs.x.data() + i)
-                                                 : gather(vs.x.data(), at);
-        I const y = i + std::size_t(N) <= points ? load_lanes<N>(vs.y.data() + i)
-                                                 : gather(vs.y.data(), at);
+        I const x =
+            i + std::size_t(N) <= points ? load_lanes<N>(vs.x.data() + i) : gather(vs.x.data(), at);
+        I const y =
+            i + std::size_t(N) <= points ? load_lanes<N>(vs.y.data() + i) : gather(vs.y.data(), at);
         min_x = min(min_x, x), max_x = max(max_x, x);
         min_y = min(min_y, y), max_y = max(max_y, y);
     }
@@ -164,8 +172,8 @@ void TriangleStream::add_patch(DomainPoints const& pattern, std::int32_t primiti
     }
     origin_x_ = low_x >> 8;
     origin_y_ = low_y >> 8;
-    bool const fits = (high_x >> 8) - origin_x_ < kMaxPatchPixels &&
-                      (high_y >> 8) - origin_y_ < kMaxPatchPixels;
+    bool const fits =
+        (high_x >> 8) - origin_x_ < kMaxPatchPixels && (high_y >> 8) - origin_y_ < kMaxPatchPixels;
     // A pixel whose centre lies on the right or bottom bound is never covered.
     bool const inside = origin_x_ >= bounds_.left && origin_y_ >= bounds_.top &&
                         (high_x + 127) >> 8 <= bounds_.right &&
@@ -180,27 +188,46 @@ void TriangleStream::add_patch(DomainPoints const& pattern, std::int32_t primiti
     }
     counters.clip_invocations += triangles;
     counters.clip_primitives += triangles;
-    if (packed_.size() < padded) packed_.resize(padded);
+    // Runs of points may be read past the last one.
+    if (packed_.size() < padded + 16) packed_.resize(padded + 16);
     I const ox(origin_x_ * 256), oy(origin_y_ * 256);
     for (std::size_t i = 0; i < padded; i += std::size_t(N)) {
-        I const x = load_lanes<N>(vs.x.data() + i) - ox,
-                y = load_lanes<N>(vs.y.data() + i) - oy;
+        I const x = load_lanes<N>(vs.x.data() + i) - ox, y = load_lanes<N>(vs.y.data() + i) - oy;
         store_lanes(x | (y << I(16)), packed_.data() + i);
     }
     primitive_id_ = primitive_id;
-    auto const* const c0 = reinterpret_cast<std::int32_t const*>(pattern.corner[0].data());
-    auto const* const c1 = reinterpret_cast<std::int32_t const*>(pattern.corner[1].data());
-    auto const* const c2 = reinterpret_cast<std::int32_t const*>(pattern.corner[2].data());
-    for (std::size_t t = 0; t < triangles; t += std::size_t(N)) {
-        I const i0 = load_lanes<N>(c0 + t), i1 = load_lanes<N>(c1 + t), i2 = load_lanes<N>(c2 + t);
-        set_up(gather(packed_.data(), i0), gather(packed_.data(), i1), gather(packed_.data(), i2),
-               i0, i1, i2);
+    pattern_ = &pattern;
+    auto const& strips = [&]() -> auto const&
+    {
+        if constexpr (N == 16)
+            return pattern.strips16;
+        else
+            return pattern.strips8;
+    }
+    ();
+    std::int32_t const* const packed = packed_.data();
+    I triangle = I::iota();
+    for (auto const& s : strips) {
+        I const p0 = load_bytes<N>(s.place[0]), p1 = load_bytes<N>(s.place[1]),
+                p2 = load_bytes<N>(s.place[2]);
+        if (!s.gather) {
+            I const a = load_lanes<N>(packed + s.run[0]), b = load_lanes<N>(packed + s.run[1]);
+            set_up(permute2(a, b, p0), permute2(a, b, p1), permute2(a, b, p2), triangle);
+        } else {
+            std::size_t const t = std::size_t(triangle.raw[0]);
+            auto const corner = [&](std::size_t k) {
+                return gather(packed, load_lanes<N>(reinterpret_cast<std::int32_t const*>(
+                                          pattern.corner[k].data() + t)));
+            };
+            set_up(corner(0), corner(1), corner(2), triangle);
+        }
+        triangle = triangle + I(N);
     }
     cover_survivors();
 }
 
 // Rejects what is culled or covers no pixel centre; keeps the rest in order.
-inline void TriangleStream::set_up(I v0, I v1, I v2, I i0, I i1, I i2)
+inline void TriangleStream::set_up(I v0, I v1, I v2, I triangle)
 {
     I const k16(16), mask(0xffff);
     I const x0 = v0 & mask, x1 = v1 & mask, x2 = v2 & mask;
@@ -213,19 +240,16 @@ inline void TriangleStream::set_up(I v0, I v1, I v2, I i0, I i1, I i2)
             bottom = (max(max(y0, y1), y2) + down) >> k8;
     Mask<N> keep = (left <= right) & (top <= bottom) & (area != I(0));
     Mask<N> const clockwise = area > I(0);
-    Mask<N> const front = assembler_.front_is_clockwise() ? clockwise : !clockwise;
-    if (cull_back_) keep = keep & front;
-    if (cull_front_) keep = keep & !front;
+    if (cull_clockwise_) keep = keep & !clockwise;
+    if (cull_counter_clockwise_) keep = keep & clockwise;
     std::uint32_t const bits = keep.bits();
     std::size_t const at = survivors_;
-    I const rows[7] = {v0,
-                       select(clockwise, v1, v2),
-                       select(clockwise, v2, v1),
-                       i0,
-                       select(clockwise, i1, i2),
-                       select(clockwise, i2, i1),
-                       I(I::Raw(front.raw))};
-    for (int k = 0; k < 7; ++k) store_lanes(compress(rows[k], bits), survivor_[k] + at);
+    store_lanes(compress(v0, bits), survivor_[0] + at);
+    store_lanes(compress(select(clockwise, v1, v2), bits), survivor_[1] + at);
+    store_lanes(compress(select(clockwise, v2, v1), bits), survivor_[2] + at);
+    // The triangle's number, and whether its corners 1 and 2 were exchanged.
+    store_lanes(compress((triangle << I(1)) | (I(I::Raw(clockwise.raw)) + I(1)), bits),
+                survivor_[3] + at);
     survivors_ += std::size_t(std::popcount(bits));
     if (survivors_ > kSurvivors - std::size_t(N)) cover_survivors();
 }
@@ -276,8 +300,8 @@ void TriangleStream::cover_group(std::size_t first, int count)
             bottom = (max(max(y[0], y[1]), y[2]) + down) >> k8;
     std::uint32_t const valid = count == N ? Mask<N>(true).bits() : (1u << count) - 1;
     // Edge i lies opposite vertex i; at the first pixel's centre, then stepped. Strict edges are
-    // moved by one unit, so that >= 0 holds for both kinds. 32 bits hold the values about boxes of up
-    // to 60 pixels.
+    // moved by one unit, so that >= 0 holds for both kinds. 32 bits hold the values about boxes of
+    // up to 60 pixels.
     I const cx = (left << k8) + I(128), cy = (top << k8) + I(128);
     I e[3], step_x[3], step_y[3];
     for (int i = 0; i < 3; ++i) {
@@ -372,8 +396,8 @@ void TriangleStream::cover_blocks(std::size_t first, int count, std::uint32_t hu
             for (int part = 0; part < kParts; ++part) {
                 I outside(0);
                 for (int i = 0; i < 3; ++i)
-                    outside = outside | (base[i][part] + I(rows_of[3 + i][l] * bx +
-                                                           rows_of[6 + i][l] * by));
+                    outside = outside |
+                              (base[i][part] + I(rows_of[3 + i][l] * bx + rows_of[6 + i][l] * by));
                 mask |= (outside >= I(0)).bits() << (part * N);
             }
             queue_block(at + (by << 16 | bx), mask, std::int32_t(covered_));
@@ -409,8 +433,7 @@ void TriangleStream::cover_huge(std::size_t s)
         for (std::int32_t px = (std::min({x[0], x[1], x[2]}) + 127) >> 8;
              px <= (std::max({x[0], x[1], x[2]}) - 129) >> 8; ++px) {
             bool in = true;
-            for (int i = 0; i < 3; ++i)
-                in = in && c[i] + dx[i] * 256 * py - dy[i] * 256 * px >= 0;
+            for (int i = 0; i < 3; ++i) in = in && c[i] + dx[i] * 256 * py - dy[i] * 256 * px >= 0;
             if (!in) continue;
             if (queued_ + 32 > kQueue) {
                 finish_covered();
@@ -431,8 +454,7 @@ void TriangleStream::finish_covered()
     I const first_survivor(covered_survivor_[0]);
     AssembledVertices const& vs = *vertices_;
     for (std::size_t t = 0; t < covered_; t += std::size_t(N)) {
-        Mask<N> const live =
-            I::iota() < I(std::int32_t(std::min(std::size_t(N), covered_ - t)));
+        Mask<N> const live = I::iota() < I(std::int32_t(std::min(std::size_t(N), covered_ - t)));
         I const s = select(live, load_lanes<N>(covered_survivor_ + t), first_survivor);
         I const v0 = gather(survivor_[0], s), v1 = gather(survivor_[1], s),
                 v2 = gather(survivor_[2], s);
@@ -450,8 +472,16 @@ void TriangleStream::finish_covered()
         edge(kA2, x0, y0, x1, y1);
         I const area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
         (F(1.0f) / F(area)).store(float_row(kInverse) + t);
-        store_lanes(gather(survivor_[6], s), row(kFront) + t);
-        I const id[3] = {gather(survivor_[3], s), gather(survivor_[4], s), gather(survivor_[5], s)};
+        I const tag = gather(survivor_[3], s);
+        Mask<N> const exchanged = (tag & I(1)) != I(0);
+        Mask<N> const front = assembler_.front_is_clockwise() ? !exchanged : exchanged;
+        store_lanes(I(I::Raw(front.raw)), row(kFront) + t);
+        auto const corner = [&](std::size_t k) {
+            return gather(reinterpret_cast<std::int32_t const*>(pattern_->corner[k].data()),
+                          tag >> I(1));
+        };
+        I const c1 = corner(1), c2 = corner(2);
+        I const id[3] = {corner(0), select(exchanged, c2, c1), select(exchanged, c1, c2)};
         auto const differences = [&](int r, float const* column) {
             F const a = gather(column, id[0]), b = gather(column, id[1]), c = gather(column, id[2]);
             a.store(float_row(r) + t);
@@ -546,8 +576,8 @@ void TriangleStream::draw_assembled(AssembledPrimitive const& p)
         e0[i] = dx[i] * (pixels.top * 256 + 128 - std::int64_t(y[from])) -
                 dy[i] * (pixels.left * 256 + 128 - std::int64_t(x[from]));
     }
-    std::int64_t const area = std::int64_t(x[1] - x[0]) * (y[2] - y[0]) -
-                              std::int64_t(x[2] - x[0]) * (y[1] - y[0]);
+    std::int64_t const area =
+        std::int64_t(x[1] - x[0]) * (y[2] - y[0]) - std::int64_t(x[2] - x[0]) * (y[1] - y[0]);
     F8 const inverse(1.0f / float(area));
     float const z0 = vs.z[a], dz1 = vs.z[b] - z0, dz2 = vs.z[c] - z0;
     float const w0 = vs.inverse_w[a], w1 = vs.inverse_w[b], w2 = vs.inverse_w[c];
@@ -557,8 +587,8 @@ void TriangleStream::draw_assembled(AssembledPrimitive const& p)
         for (int px = pixels.left; px < pixels.right; px += 8) {
             I64 e[3], in = I64{} - 1;
             for (int i = 0; i < 3; ++i) {
-                std::int64_t const here = e0[i] + dx[i] * 256 * (py - pixels.top) -
-                                          dy[i] * 256 * (px - pixels.left);
+                std::int64_t const here =
+                    e0[i] + dx[i] * 256 * (py - pixels.top) - dy[i] * 256 * (px - pixels.left);
                 e[i] = here - dy[i] * kRamp;
                 in &= e[i] >= strict[i] + I64{};
             }
@@ -581,8 +611,7 @@ void TriangleStream::draw_assembled(AssembledPrimitive const& p)
                             da2 = vs.component(c, k + 4) - a0;
                 bool const flat = mode == Interpolation::LinearNoperspective ||
                                   mode == Interpolation::LinearNoperspectiveCentroid;
-                F8 const v = mode == Interpolation::Constant
-                                 ? F8(vs.component(p.leading, k + 4))
+                F8 const v = mode == Interpolation::Constant ? F8(vs.component(p.leading, k + 4))
                              : flat ? F8(a0) + (b1 * F8(da1) + b2 * F8(da2))
                                     : F8(a0) + (p1 * F8(da1) + p2 * F8(da2));
                 compress(v, bits).store(attribute_storage_.data() + std::size_t(k) * kShadeRow +
@@ -639,8 +668,8 @@ void TriangleStream::shade()
                 F const c = F::load(color_[k] + q);
                 F const in = select(c > F(0.0f), select(c < F(1.0f), c, F(1.0f)), F(0.0f));
                 D const scaled = __builtin_convertvector(in.raw, D) * 255.0 + 0.5;
-                color[0] = color[0] |
-                           (I(I::Raw(__builtin_convertvector(scaled, I::Raw))) << I(8 * k));
+                color[0] =
+                    color[0] | (I(I::Raw(__builtin_convertvector(scaled, I::Raw))) << I(8 * k));
             }
         }
         std::uint32_t rest = n == N ? Mask<N>(true).bits() : (1u << n) - 1;

@@ -1,4 +1,5 @@
-// Triangles in the common state, many at a time, to the bits that emu/rasterizer.h gives one by one.
+// Triangles in the common state, many at a time, to the bits that emu/rasterizer.h gives one by
+// one.
 //
 // The common state: solid triangles, one sample, depth LESS or LESS_EQUAL in 32-bit float, one
 // colour target that is overwritten, a pixel shader of straight-line arithmetic. Such a shader has
@@ -43,8 +44,8 @@ public:
         if (wide_color_) {
             std::size_t const b = std::size_t(&block - blocks_.data());
             for (std::size_t k = 0; k < 3; ++k)
-                __builtin_memcpy(rest_.data() + (b * 3 + k) * kRow + block.count,
-                                 &color[k + 1].raw, sizeof color[0].raw);
+                __builtin_memcpy(rest_.data() + (b * 3 + k) * kRow + block.count, &color[k + 1].raw,
+                                 sizeof color[0].raw);
         }
         block.count += std::uint32_t(n);
     }
@@ -118,10 +119,28 @@ private:
     static constexpr std::size_t kShadeRow = kShade + 16, kTableRow = kSurvivors + 32;
     static constexpr int kMaxPatchPixels = 126; // 16-bit 8.8 numbers hold a patch
     // Rows of the covered triangles' table.
-    enum Row { kA1, kB1, kC1, kA2, kB2, kC2, kFront, kId, kInverse, kZ, kDz1, kDz2, kW, kDw1,
-               kDw2, kW1, kW2, kAttributes };
+    enum Row {
+        kA1,
+        kB1,
+        kC1,
+        kA2,
+        kB2,
+        kC2,
+        kFront,
+        kId,
+        kInverse,
+        kZ,
+        kDz1,
+        kDz2,
+        kW,
+        kDw1,
+        kDw2,
+        kW1,
+        kW2,
+        kAttributes
+    };
 
-    void set_up(I v0, I v1, I v2, I i0, I i1, I i2);
+    void set_up(I v0, I v1, I v2, I triangle);
     void cover_survivors();
     void cover_group(std::size_t first, int count);
     void cover_small(std::size_t first, std::uint32_t valid, I corner, I columns, I rows, I (&e)[3],
@@ -141,7 +160,7 @@ private:
     PrimitiveAssembler const& assembler_;
     int tiles_x_, tiles_y_, pitch_, attributes_;
     Rect bounds_;
-    bool wide_color_, cull_front_, cull_back_;
+    bool wide_color_, cull_clockwise_, cull_counter_clockwise_;
     std::vector<Interpolation> modes_;
     AssembledVertices* vertices_ = nullptr;
     FragmentBins* bins_ = nullptr;
@@ -150,11 +169,12 @@ private:
 
     // A patch: packed positions relative to its origin, and what identifies it.
     std::vector<std::int32_t> packed_;
+    DomainPoints const* pattern_ = nullptr;
     std::int32_t origin_x_ = 0, origin_y_ = 0, primitive_id_ = 0;
     std::vector<AssembledPrimitive> assembled_;
 
     std::size_t survivors_ = 0;
-    std::int32_t survivor_[7][kSurvivors + 32]; // packed corners, vertex ids, front
+    std::int32_t survivor_[4][kSurvivors + 32]; // packed corners; 2 * triangle + exchanged
     std::size_t covered_ = 0; // of the survivors; at most kSurvivors between two finish_covered()
     std::vector<std::int32_t> table_;
     std::int32_t covered_survivor_[kTableRow];
