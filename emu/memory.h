@@ -17,9 +17,9 @@
 
 namespace tessemu {
 
-enum class ResourceKind { Vertex, Index, ControlPoint, PatchConstant, Buffer, Texture };
+enum class ResourceKind { Vertex, Index, ControlPoint, PatchConstant, Buffer, Texture, Shared };
 
-/// "vertex", "index", "control_point", "patch_constant", "buffer", "texture"
+/// "vertex", "index", "control_point", "patch_constant", "buffer", "texture", "shared"
 char const* name_of(ResourceKind kind);
 
 /// What a stage read of one resource. unique_bytes counts each element once per draw (control
@@ -69,7 +69,7 @@ private:
 
 /// One thread's counter of one buffer slot.
 struct FetchSlot {
-    std::uint64_t count = 0;
+    std::uint64_t count = 0, written = 0;
     TouchedElements* touched = nullptr;
 };
 
@@ -174,63 +174,6 @@ template <class T, class E, int N> auto load(Buffer<E> const& buffer, IntLanes<N
         return T(r);
     else
         return r;
-}
-
-/// 2D texture of float4 texels, rows from the top.
-class Texture2D {
-public:
-    Texture2D() = default;
-    Texture2D(std::span<float const> texels, int width, int height, int slot, std::string name)
-        : texels_(texels),
-          width_(width),
-          height_(height),
-          slot_(slot),
-          name_(std::move(name))
-    {
-        assert(texels.size() == std::size_t(width) * std::size_t(height) * 4);
-    }
-    int width() const { return width_; }
-    int height() const { return height_; }
-    int slot() const { return slot_; }
-    std::span<float const> texels() const { return texels_; }
-    ResourceInfo info() const
-    {
-        return {name_, ResourceKind::Texture, slot_, texels_.size() / 4, 4 * sizeof(float)};
-    }
-
-private:
-    std::span<float const> texels_;
-    int width_ = 0, height_ = 0, slot_ = 0;
-    std::string name_;
-};
-
-/// HLSL Load: texel (x, y) without filtering; zeros out of range (R142).
-template <class T> float4<T> load(Texture2D const& texture, int_of<T> x, int_of<T> y)
-{
-    int const width = texture.width(), height = texture.height();
-    auto const texel = [&](std::int32_t i, std::int32_t j) {
-        bool const in = i >= 0 && j >= 0 && i < width && j < height;
-        return in ? std::int32_t(j * width + i) : std::int32_t(-1);
-    };
-    auto const count = texture.texels().size() / 4;
-    float const* const data = texture.texels().data();
-    if constexpr (lanes_of<T> == 1) {
-        std::int32_t const i = texel(x, y);
-        detail::count_fetch<T>(texture.slot(), i, count);
-        if (i < 0) return {T(0), T(0), T(0), T(0)};
-        return load_record<float4<T>>(data + 4 * std::size_t(i));
-    } else {
-        constexpr int N = lanes_of<T>;
-        IntLanes<N> index(0);
-        for (int k = 0; k < N; ++k) index.raw[k] = texel(x.raw[k], y.raw[k]);
-        detail::count_fetch<T>(texture.slot(), index, count);
-        Lanes<N> c[4] = {0.0f, 0.0f, 0.0f, 0.0f};
-        for (int k = 0; k < N; ++k)
-            for (int m = 0; m < 4; ++m)
-                if (index.raw[k] >= 0)
-                    c[m].raw[k] = data[4 * std::size_t(index.raw[k]) + std::size_t(m)];
-        return {T(c[0]), T(c[1]), T(c[2]), T(c[3])};
-    }
 }
 
 /// Records of one patch (HLSL: InputPatch, OutputPatch, patch constants): each [] is a counted

@@ -18,8 +18,10 @@ char const* name_of(ResourceKind kind)
         return "patch_constant";
     case ResourceKind::Buffer:
         return "buffer";
-    default:
+    case ResourceKind::Texture:
         return "texture";
+    default:
+        return "shared";
     }
 }
 
@@ -57,6 +59,7 @@ DrawStatistics& DrawStatistics::operator+=(DrawStatistics const& o)
 {
     pipeline += o.pipeline;
     samples_passed += o.samples_passed;
+    shared_out_of_range += o.shared_out_of_range;
     tess_factors_above_max += o.tess_factors_above_max;
     for (std::size_t i = 0; i < stream_output.size(); ++i) {
         stream_output[i].NumPrimitivesWritten += o.stream_output[i].NumPrimitivesWritten;
@@ -85,7 +88,9 @@ StageCounters& StageCounters::operator+=(StageCounters const& o)
     constant_fetches += o.constant_fetches, constant_touched += o.constant_touched;
     output_fetches += o.output_fetches, output_touched += o.output_touched;
     for (std::size_t i = 0; i < buffer_fetches.size(); ++i)
-        buffer_fetches[i] += o.buffer_fetches[i];
+        buffer_fetches[i] += o.buffer_fetches[i], buffer_writes[i] += o.buffer_writes[i];
+    shared_loads += o.shared_loads, shared_stores += o.shared_stores;
+    shared_out_of_range += o.shared_out_of_range;
     return *this;
 }
 
@@ -111,6 +116,14 @@ void StageBuffers::report(StageCounters const& counters, StageStatistics& out) c
         out.fetches.push_back(
             {r.name, r.kind, n, n * r.element_bytes, touched_[i]->count() * r.element_bytes});
     }
+}
+
+std::uint64_t StageBuffers::written_bytes(StageCounters const& counters) const
+{
+    std::uint64_t bytes = 0;
+    for (ResourceInfo const& r : resources_)
+        bytes += counters.buffer_writes[std::size_t(r.slot)] * r.element_bytes;
+    return bytes;
 }
 
 } // namespace tessemu

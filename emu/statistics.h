@@ -47,6 +47,7 @@ struct DrawStatistics {
     std::vector<StageStatistics> stages;
     std::uint64_t samples_passed = 0; ///< D3D11_QUERY_OCCLUSION (R165)
     std::array<StreamOutputStatistics, 4> stream_output{};
+    std::uint64_t shared_out_of_range = 0;    ///< stores past group-shared memory (I-26)
     std::uint64_t tess_factors_above_max = 0; ///< clamped to the hull shader's maximum (I-28)
 
     DrawStatistics& operator+=(DrawStatistics const& o);
@@ -60,7 +61,8 @@ struct StageCounters {
     std::uint64_t input_fetches = 0, input_touched = 0;       ///< control points, vertices
     std::uint64_t constant_fetches = 0, constant_touched = 0; ///< patch constants
     std::uint64_t output_fetches = 0, output_touched = 0; ///< a hull shader's own control points
-    std::array<std::uint64_t, kBufferSlots> buffer_fetches{};
+    std::array<std::uint64_t, kBufferSlots> buffer_fetches{}, buffer_writes{};
+    std::uint64_t shared_loads = 0, shared_stores = 0, shared_out_of_range = 0;
 
     StageCounters& operator+=(StageCounters const& o);
 };
@@ -72,6 +74,7 @@ public:
     std::array<FetchSlot, kBufferSlots> slots() const;
     /// The buffers' rows of a stage's table.
     void report(StageCounters const& counters, StageStatistics& out) const;
+    std::uint64_t written_bytes(StageCounters const& counters) const;
 
 private:
     std::vector<ResourceInfo> resources_;
@@ -96,7 +99,8 @@ public:
     {
         counters_.flops += execution.take();
         for (std::size_t i = 0; i < slots_.size(); ++i)
-            counters_.buffer_fetches[i] += slots_[i].count;
+            counters_.buffer_fetches[i] += slots_[i].count,
+                counters_.buffer_writes[i] += slots_[i].written;
         execution = saved_;
         site_state = saved_sites_;
     }

@@ -2,6 +2,7 @@
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/graphics_pipeline.h"
+#include "emu/texture.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,0 +1,252 @@
+// Compute shader stage: groups, shared memory, barriers (rules R151 to R155).
+//
+// A compute shader is
+//
+//     struct S {
+//         static constexpr std::array<int, 3> kThreads{x, y, z};  // [numthreads]
+//         static constexpr int kSharedFloats = ...;               // optional, at most 8192
+//         static constexpr bool kOrdered = true;                  // optional, see below
+//         template <class T> void operator()(ComputeGroup<T>& group) const
+//         {
+//             group.for_each_thread([&](ComputeInput<T> const& in) { ... });  // to the barrier
+//             group.for_each_thread([&](ComputeInput<T> const& in) { ... });
+//         }
+//     };
+//
+// Each for_each_thread runs all threads of the group, lanes across threads; its end is
+// GroupMemoryBarrierWithGroupSync, which so lies in uniform control flow by construction. Groups run
+// on any thread in any order unless the shader is ordered; a shader whose groups meet in memory
+// (atomics, append) must be, and then runs in serial order (I-24).
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/machine.h"
+#include "emu/parallel.h"
+#include "emu/statistics.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace tessemu {
+
+inline constexpr int kMaxSharedFloats = 8192; // 32 KiB (R153)
+inline constexpr std::uint32_t kMaxDispatch = 65535;
+
+template <class I> struct int3 {
+    I x, y, z;
+};
+
+template <class T> struct ComputeInput {
+    int3<std::int32_t> group_id;         ///< SV_GroupID
+    int3<int_of<T>> group_thread_id;     ///< SV_GroupThreadID
+    int3<int_of<T>> dispatch_thread_id;  ///< SV_DispatchThreadID (R152)
+    int_of<T> group_index;               ///< SV_GroupIndex (R152)
+};
+
+/// A buffer that shaders write (D3D11: RWBuffer): out-of-range loads give 0, out-of-range stores and
+/// atomics do nothing (R144). `E` is float, std::int32_t or std::uint32_t.
+template <class E> class RWBuffer {
+public:
+    RWBuffer() = default;
+    RWBuffer(std::span<E> elements, int slot, std::string name)
+        : elements_(elements),
+          slot_(slot),
+          name_(std::move(name))
+    {
+        assert(slot >= 0 && slot < kBufferSlots);
+    }
+    std::span<E> elements() const { return elements_; }
+    int slot() const { return slot_; }
+    ResourceInfo info() const
+    {
+        return {name_, ResourceKind::Buffer, slot_, elements_.size(), sizeof(E)};
+    }
+
+private:
+    std::span<E> elements_;
+    int slot_ = 0;
+    std::string name_;
+};
+
+namespace detail {
+/// work(lane, element) for each active lane whose element exists; counts the writes.
+template <class T, class E, int N, class Work>
+void for_each_written(RWBuffer<E> const& b, IntLanes<N> i, Work const& work)
+{
+    if constexpr (ScalarTraits<T>::kCounted) {
+        execution.features |= kFetches;
+        if (execution.buffers) execution.buffers[b.slot()].written += execution.active_lanes;
+    }
+    for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
+        int const l = std::countr_zero(bits);
+        if (std::size_t(i.raw[l]) < b.elements().size()) work(l, b.elements()[std::size_t(i.raw[l])]);
+    }
+}
+} // namespace detail
+
+/// buffer[i] per lane, as memory is now.
+template <class T, class E, int N> auto load(RWBuffer<E> const& b, IntLanes<N> i)
+{
+    return load<T>(Buffer<E>(std::span<E const>(b.elements()), b.slot(), ""), i);
+}
+/// buffer[i] = value in the active lanes, the highest lane last.
+template <class T, int N> void store(RWBuffer<float> const& b, IntLanes<N> i, T const& value)
+{
+    Lanes<N> const v = lanes_value(value);
+    detail::for_each_written<T>(b, i, [&](int l, float& e) { e = v.raw[l]; });
+}
+template <class T, class E, int N>
+requires std::integral<E>
+void store(RWBuffer<E> const& b, IntLanes<N> i, IntLanes<N> value)
+{
+    detail::for_each_written<T>(b, i, [&](int l, E& e) { e = E(value.raw[l]); });
+}
+/// InterlockedAdd in the active lanes in order; gives the values before. 32 bits, wraps.
+template <class T, class E, int N>
+requires std::integral<E> IntLanes<N> atomic_add(RWBuffer<E> const& b, IntLanes<N> i,
+                                                 IntLanes<N> value)
+{
+    IntLanes<N> before(0);
+    detail::for_each_written<T>(b, i, [&](int l, E& e) {
+        before.raw[l] = std::int32_t(e);
+        e = E(std::uint32_t(e) + std::uint32_t(value.raw[l]));
+    });
+    return before;
+}
+
+/// A group of threads in lock step, and its shared memory.
+template <class T> class ComputeGroup {
+    static constexpr int N = lanes_of<T>;
+
+public:
+    ComputeGroup(std::array<int, 3> size, std::span<float> shared) : size_(size), shared_(shared) {}
+
+    template <class Work> void for_each_thread(Work const& work)
+    {
+        int const threads = size_[0] * size_[1] * size_[2];
+        for (int first = 0; first < threads; first += N) {
+            execution.activate((1u << std::min(N, threads - first)) - 1);
+            site_state.scope = site_state.next = phase_;
+            ComputeInput<T> in;
+            in.group_id = group_id_;
+            in.group_index = IntLanes<N>::iota() + IntLanes<N>(first);
+            for (int l = 0; l < N; ++l) {
+                int const i = first + l;
+                in.group_thread_id.x.raw[l] = i % size_[0];
+                in.group_thread_id.y.raw[l] = i / size_[0] % size_[1];
+                in.group_thread_id.z.raw[l] = i / (size_[0] * size_[1]);
+            }
+            in.dispatch_thread_id = {
+                in.group_thread_id.x + IntLanes<N>(group_id_.x * size_[0]),
+                in.group_thread_id.y + IntLanes<N>(group_id_.y * size_[1]),
+                in.group_thread_id.z + IntLanes<N>(group_id_.z * size_[2])};
+            work(static_cast<ComputeInput<T> const&>(in));
+        }
+        ++phase_;
+    }
+
+    /// groupshared memory; out-of-range loads give 0, stores do nothing and are reported (I-26).
+    T shared(IntLanes<N> i)
+    {
+        loads_ += execution.active_lanes;
+        Lanes<N> v(0.0f);
+        for (int l = 0; l < N; ++l)
+            if (std::size_t(i.raw[l]) < shared_.size()) v.raw[l] = shared_[std::size_t(i.raw[l])];
+        return T(v);
+    }
+    void store_shared(IntLanes<N> i, T const& value)
+    {
+        stores_ += execution.active_lanes;
+        Lanes<N> const v = lanes_value(value);
+        for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
+            int const l = std::countr_zero(bits);
+            if (std::size_t(i.raw[l]) < shared_.size())
+                shared_[std::size_t(i.raw[l])] = v.raw[l];
+            else
+                ++out_of_range_;
+        }
+    }
+
+    // For the stage.
+    void begin(int3<std::int32_t> id)
+    {
+        group_id_ = id;
+        phase_ = 0;
+        // Undefined at the start of a group (R153): a pattern that shows (I-27).
+        std::fill(shared_.begin(), shared_.end(), std::bit_cast<float>(0x7fc0deadu));
+    }
+    std::uint64_t shared_loads() const { return loads_; }
+    std::uint64_t shared_stores() const { return stores_; }
+    std::uint64_t shared_out_of_range() const { return out_of_range_; }
+
+private:
+    std::array<int, 3> size_;
+    std::span<float> shared_;
+    int3<std::int32_t> group_id_{0, 0, 0};
+    std::uint64_t phase_ = 0, loads_ = 0, stores_ = 0, out_of_range_ = 0;
+};
+
+class ComputeProgram {
+public:
+    virtual ~ComputeProgram() = default;
+    virtual std::array<int, 3> threads() const = 0;
+    virtual int shared_floats() const = 0;
+    virtual bool ordered() const = 0;
+    virtual std::vector<ResourceInfo> resources() const = 0;
+    /// Runs groups first to first + count - 1 of a dispatch, x fastest.
+    virtual void run(std::array<std::uint32_t, 3> const& groups, std::uint64_t first,
+                     std::uint64_t count, StageCounters& counters,
+                     StageBuffers const& buffers) const = 0;
+};
+
+template <class Shader, class T> class ComputeProgramOn final : public ComputeProgram {
+public:
+    ComputeProgramOn(Shader const& shader, std::uint64_t seed) : shader_(shader), seed_(seed) {}
+    std::array<int, 3> threads() const override { return Shader::kThreads; }
+    int shared_floats() const override
+    {
+        if constexpr (requires { Shader::kSharedFloats; }) return Shader::kSharedFloats;
+        return 0;
+    }
+    bool ordered() const override
+    {
+        if constexpr (requires { Shader::kOrdered; }) return Shader::kOrdered;
+        return false;
+    }
+    std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
+
+    void run(std::array<std::uint32_t, 3> const& groups, std::uint64_t first, std::uint64_t count,
+             StageCounters& counters, StageBuffers const& buffers) const override
+    {
+        StageScope const scope(counters, buffers, seed_);
+        std::vector<float> shared(static_cast<std::size_t>(shared_floats()));
+        ComputeGroup<T> group(Shader::kThreads, shared);
+        for (std::uint64_t g = first; g < first + count; ++g) {
+            group.begin({std::int32_t(g % groups[0]), std::int32_t(g / groups[0] % groups[1]),
+                         std::int32_t(g / groups[0] / groups[1])});
+            shader_(group);
+        }
+        auto const& t = Shader::kThreads;
+        counters.invocations += count * std::uint64_t(t[0] * t[1] * t[2]);
+        counters.shared_loads += group.shared_loads();
+        counters.shared_stores += group.shared_stores();
+        counters.shared_out_of_range += group.shared_out_of_range();
+    }
+
+private:
+    Shader shader_;
+    std::uint64_t seed_;
+};
+
+template <class Shader>
+std::unique_ptr<ComputeProgram> make_compute_program(Shader const& shader, Machine const& machine)
+{
+    return make_program<ComputeProgramOn, ComputeProgram>(shader, machine);
+}
+
+/// Runs x * y * z groups; any 0 does nothing (R151). Throws LimitError past D3D11's limits.
+DrawStatistics dispatch(ComputeProgram const& program, std::array<std::uint32_t, 3> groups,
+                        ThreadPool const& threads);
+
+} // namespace tessemu

@@ -1,0 +1,150 @@
+// The fast way for triangles against the reader's rasterizer and against the general one.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/reference_rasterizer.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace tessemu {
+namespace {
+
+template <class T> struct Vertex {
+    float4<T> position;
+    float2<T> smooth, flat;
+    T constant;
+    static constexpr auto signature()
+    {
+        return std::tuple{&Vertex::position, &Vertex::smooth, &Vertex::flat, &Vertex::constant};
+    }
+};
+template <class T> struct Attributes {
+    float2<T> smooth, flat;
+    T constant;
+    static constexpr std::array<Interpolation, 3> kInterpolation{
+        Interpolation::Linear, Interpolation::LinearNoperspective, Interpolation::Constant};
+    static constexpr auto signature()
+    {
+        return std::tuple{&Attributes::smooth, &Attributes::flat, &Attributes::constant};
+    }
+};
+struct PassThrough {
+    template <class T> using Input = Vertex<T>;
+    template <class T> using Output = Vertex<T>;
+    template <class T> Vertex<T> operator()(VertexInput<T> const&, Vertex<T> const& v) const
+    {
+        return v;
+    }
+};
+// A shader that the library has never seen: everything it gets goes into the colour.
+struct ShowAll {
+    template <class T> using Input = Attributes<T>;
+    template <class T> float4<T> operator()(PixelInput<T> const& p, Attributes<T> const& a) const
+    {
+        T const facing = select(p.front_face, T(0.5), T(0.25));
+        return {T(a.smooth.x + facing * a.flat.x), T(a.smooth.y * a.flat.y),
+                T(a.constant + T(p.primitive_id) * T(1 / 64.0f)),
+                T(p.position.z * p.position.w + p.position.x * T(1 / 128.0f))};
+    }
+};
+
+constexpr int kWidth = 150, kHeight = 140; // two tiles by two
+
+struct Soup {
+    std::vector<float> vertices;
+    std::vector<std::uint32_t> indices;
+    CullMode cull;
+    bool counter_clockwise, scissor, depth_clip;
+    Comparison func;
+    Format format;
+    Viewport viewport;
+    Rect rect;
+    float guard;
+};
+
+Soup soup()
+{
+    Soup s;
+    int const points = *rc::gen::inRange(3, 40), triangles = *rc::gen::inRange(1, 60);
+    float const spread = *rc::gen::element(0.05f, 0.4f, 1.5f, 60.0f);
+    auto const real = [](int n) { return float(*rc::gen::inRange(-n, n)) / float(n); };
+    float const cx = real(1000), cy = real(1000);
+    for (int i = 0; i < points; ++i) {
+        float const w = *rc::gen::element(1.0f, 0.5f, 3.0f, 1.25f, -0.5f);
+        s.vertices.insert(s.vertices.end(),
+                          {(cx + spread * real(4096)) * w, (cy + spread * real(4096)) * w,
+                           (0.5f + 0.7f * real(1000)) * w, w, real(100), real(100), real(100),
+                           real(100), float(i)});
+    }
+    for (int i = 0; i < 3 * triangles; ++i)
+        s.indices.push_back(std::uint32_t(*rc::gen::inRange(0, points)));
+    s.cull = *rc::gen::element(CullMode::None, CullMode::Back, CullMode::Front);
+    s.counter_clockwise = *rc::gen::arbitrary<bool>();
+    s.scissor = *rc::gen::arbitrary<bool>();
+    s.depth_clip = *rc::gen::arbitrary<bool>();
+    s.func = *rc::gen::element(Comparison::Less, Comparison::LessEqual);
+    s.format = *rc::gen::element(Format::R8G8B8A8_UNORM, Format::R32G32B32A32_FLOAT);
+    s.viewport = *rc::gen::element(Viewport{0, 0, kWidth, kHeight, 0, 1},
+                                   Viewport{10.5f, -7.25f, 100, 200, 0.25f, 0.75f},
+                                   Viewport{-300, -300, 700, 700, 0, 1});
+    s.rect = {*rc::gen::inRange(0, 60), *rc::gen::inRange(0, 60), *rc::gen::inRange(60, 200),
+              *rc::gen::inRange(60, 200)};
+    s.guard = *rc::gen::element(16384.0f, 0.0f, 100.0f);
+    return s;
+}
+
+RC_GTEST_PROP(TriangleStream, SoupsEqualTheReadersRasterizerInEveryBitAndCount, ())
+{
+    Soup const s = soup();
+    GraphicsPipelineDesc d;
+    d.vertex_shader = make_vertex_program(PassThrough{}, {});
+    d.pixel_shader = make_pixel_program(ShowAll{}, {});
+    DrawCall call;
+    call.topology = PrimitiveTopology::TriangleList;
+    call.set_vertices(s.vertices, 9);
+    call.indices = std::span<std::uint32_t const>(s.indices);
+
+    std::array<float, 4> const background{0.1f, 0.2f, 0.3f, 0.4f};
+    ColorTarget color(kWidth, kHeight, s.format);
+    DepthTarget depth(kWidth, kHeight);
+    RasterTarget raster{{&color}, &depth, {s.viewport}, {s.rect}};
+    raster.rasterizer.cull = s.cull;
+    raster.rasterizer.front_counter_clockwise = s.counter_clockwise;
+    raster.rasterizer.scissor_enable = s.scissor;
+    raster.rasterizer.depth_clip_enable = s.depth_clip;
+    raster.rasterizer.guard_band_px = s.guard;
+    raster.depth_stencil.depth_func = s.func;
+
+    test::ReferenceRasterizer reference(raster, *d.pixel_shader, 9, background);
+    for (std::size_t t = 0; t < s.indices.size() / 3; ++t) {
+        std::array<std::vector<float>, 3> v;
+        for (std::size_t k = 0; k < 3; ++k) {
+            auto const at = s.vertices.begin() + 9 * std::ptrdiff_t(s.indices[3 * t + k]);
+            v[k].assign(at, at + 9);
+        }
+        reference.triangle(v, std::int32_t(t));
+    }
+
+    CoverageCounts coverage(kWidth, kHeight);
+    // With coverage counts the draw takes the general way.
+    for (CoverageCounts* counts : {static_cast<CoverageCounts*>(nullptr), &coverage}) {
+        raster.coverage = counts;
+        color.clear(background, ThreadPool(1));
+        depth.clear(1, 0, ThreadPool(1));
+        DrawStatistics const n = draw(GraphicsPipeline(d), call, &raster, {}, ThreadPool(2));
+        RC_ASSERT(reference.differing_pixels(color, depth) == 0u);
+        RC_ASSERT(n.pipeline.CInvocations == reference.clip_invocations);
+        RC_ASSERT(n.pipeline.CPrimitives == reference.clip_primitives);
+        RC_ASSERT(n.pipeline.PSInvocations == reference.passed);
+        RC_ASSERT(n.samples_passed == reference.passed);
+        FlopCount const flops = d.pixel_shader->info().flops * reference.passed;
+        for (StageStatistics const& stage : n.stages)
+            if (stage.stage == "pixel_shader") RC_ASSERT(stage.flops == flops);
+    }
+    std::uint64_t covered = 0;
+    for (std::uint32_t c : coverage.count) covered += c;
+    RC_ASSERT(covered == reference.fragments);
+}
+
+} // namespace
+} // namespace tessemu

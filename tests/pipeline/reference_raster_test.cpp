@@ -1,0 +1,104 @@
+// Tessellated cages: the streamed draw against the reader's rasterizer, bit for bit.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "io/model.h"
+#include "pipeline/frame.h"
+#include "tests/support/reference_rasterizer.h"
+
+#include <gtest/gtest.h>
+
+namespace tessemu {
+namespace {
+
+constexpr int kSize = 300;
+
+struct Case {
+    char const* model;
+    float tess;
+    float focal; ///< above 1: closer than the whole figure
+    CullMode cull;
+    Partitioning partitioning;
+};
+
+void expect_same(Case const& c, int lanes, int threads)
+{
+    Technique const& technique = find_technique("gregory-stencil");
+    PreparedMesh const m = prepare_mesh(load_model(c.model).mesh, technique);
+    auto const patches = technique.build(*m.topology, {});
+    Camera camera = frame_points(m.mesh->positions, {0.5f, 0.4f, 1}, 1);
+    camera.focal *= c.focal;
+    Machine const machine{lanes, Contraction::None, 0};
+
+    PassSettings settings;
+    settings.tess_factor = c.tess;
+    settings.partitioning = c.partitioning;
+    settings.machine = machine;
+    settings.view_projection = view_projection(camera, 1);
+    settings.pixel_shader = [&](PatchKind const& kind) {
+        return make_view(View::Patches, kind, camera, machine);
+    };
+    std::array<float, 4> const background{0, 0, 0, 0};
+    ThreadPool const pool(threads);
+    ColorTarget color(kSize, kSize);
+    DepthTarget depth(kSize, kSize);
+    color.clear(background, pool);
+    depth.clear(1, 0, pool);
+    RasterTarget raster{{&color}, &depth, {{0, 0, kSize, kSize, 0, 1}}};
+    raster.rasterizer.cull = c.cull;
+    raster.rasterizer.front_counter_clockwise = true;
+
+    PipelineStatistics drawn;
+    std::uint64_t covered = 0;
+    std::vector<DrawPass> const passes = patches->passes(settings);
+    for (DrawPass const& pass : passes) {
+        DrawStatistics const n = draw(pass.pipeline, pass.call, &raster, {}, pool);
+        drawn += n.pipeline;
+        for (StageStatistics const& s : n.stages)
+            if (s.stage == "rasterizer") covered += s.output_bytes / 4;
+    }
+    // One picture of all passes: their pixel shaders take turns.
+    test::ReferenceRasterizer sum(raster, *passes[0].pipeline.desc().pixel_shader, 7, background);
+    for (DrawPass const& pass : passes) {
+        sum.use(*pass.pipeline.desc().pixel_shader);
+        draw(
+            pass.pipeline, pass.call, nullptr,
+            [&](ShadedPatch const& p) {
+                auto const& index = p.points->patch.indices;
+                for (std::size_t t = 0; t < index.size(); t += 3) {
+                    std::array<std::vector<float>, 3> v;
+                    for (std::size_t k = 0; k < 3; ++k)
+                        for (std::size_t i = 0; i < 7; ++i)
+                            v[k].push_back(p.outputs[i * p.stride + index[t + k]]);
+                    sum.triangle(v, std::int32_t(p.primitive_id));
+                }
+            },
+            pool);
+    }
+    SCOPED_TRACE(std::string(c.model) + " tess " + std::to_string(c.tess) + " lanes " +
+                 std::to_string(lanes));
+    EXPECT_GT(sum.passed, 1000u);
+    EXPECT_EQ(sum.differing_pixels(color, depth), 0u);
+    EXPECT_EQ(drawn.CInvocations, sum.clip_invocations);
+    EXPECT_EQ(drawn.CPrimitives, sum.clip_primitives);
+    EXPECT_EQ(drawn.PSInvocations, sum.passed);
+    EXPECT_EQ(covered, sum.fragments);
+}
+
+TEST(TriangleStream, CagesEqualTheReadersRasterizerAtFactorsOneTo64)
+{
+    for (float tess : {1.0f, 2.5f, 5.0f, 10.0f, 17.0f, 25.0f, 40.3f, 64.0f})
+        expect_same({"jug", tess, 1, CullMode::None, Partitioning::FractionalOdd}, 16, 2);
+    for (float tess : {3.0f, 10.0f, 17.0f, 64.0f})
+        expect_same({"saddle_star", tess, 1, CullMode::Back, Partitioning::FractionalEven}, 8, 3);
+    expect_same({"spindle", 9, 1, CullMode::Front, Partitioning::Integer}, 4, 1);
+}
+
+TEST(TriangleStream, PatchesThatLeaveTheScreenEqualTheReadersRasterizer)
+{
+    for (float focal : {2.0f, 5.0f, 14.0f}) // up to patches wider than the 126 pixels of the fast way
+        for (float tess : {1.0f, 4.0f, 30.0f})
+            expect_same({"jug", tess, focal, CullMode::None, Partitioning::FractionalOdd}, 16, 2);
+}
+
+} // namespace
+} // namespace tessemu
