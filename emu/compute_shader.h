@@ -128,20 +128,25 @@ public:
         for (int first = 0; first < threads; first += N) {
             execution.activate((1u << std::min(N, threads - first)) - 1);
             site_state.scope = site_state.next = phase_;
-            ComputeInput<T> in;
-            in.group_id = group_id_;
-            in.group_index = IntLanes<N>::iota() + IntLanes<N>(first);
-            for (int l = 0; l < N; ++l) {
-                int const i = first + l;
-                in.group_thread_id.x.raw[l] = i % size_[0];
-                in.group_thread_id.y.raw[l] = i / size_[0] % size_[1];
-                in.group_thread_id.z.raw[l] = i / (size_[0] * size_[1]);
-            }
-            in.dispatch_thread_id = {
-                in.group_thread_id.x + IntLanes<N>(group_id_.x * size_[0]),
-                in.group_thread_id.y + IntLanes<N>(group_id_.y * size_[1]),
-                in.group_thread_id.z + IntLanes<N>(group_id_.z * size_[2])};
-            work(static_cast<ComputeInput<T> const&>(in));
+            // A number per lane, by way of an array: g++ 12 takes elements written one by one for
+            // uninitialised.
+            auto const lanes = [&](auto const& number) {
+                std::int32_t n[N];
+                for (int l = 0; l < N; ++l) n[l] = number(first + l);
+                IntLanes<N> r;
+                __builtin_memcpy(&r.raw, n, sizeof n);
+                return r;
+            };
+            IntLanes<N> const x = lanes([&](int i) { return i % size_[0]; }),
+                              y = lanes([&](int i) { return i / size_[0] % size_[1]; }),
+                              z = lanes([&](int i) { return i / (size_[0] * size_[1]); });
+            ComputeInput<T> const in{group_id_,
+                                     {x, y, z},
+                                     {x + IntLanes<N>(group_id_.x * size_[0]),
+                                      y + IntLanes<N>(group_id_.y * size_[1]),
+                                      z + IntLanes<N>(group_id_.z * size_[2])},
+                                     lanes([](int i) { return i; })};
+            work(in);
         }
         ++phase_;
     }
