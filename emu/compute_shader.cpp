@@ -13,11 +13,13 @@ void check(ComputeProgram const& program, std::array<std::uint32_t, 3> const& gr
     };
     auto const t = program.threads();
     for (int n : t)
-        if (n < 1) throw Error("threads of a group is " + std::to_string(n) + ", at least 1 is needed");
+        if (n < 1)
+            throw Error("threads of a group is " + std::to_string(n) + ", at least 1 is needed");
     limit("threads of a group in x", std::uint64_t(t[0]), 1024);
     limit("threads of a group in y", std::uint64_t(t[1]), 1024);
     limit("threads of a group in z", std::uint64_t(t[2]), 64);
-    limit("threads of a group", std::uint64_t(t[0]) * std::uint64_t(t[1]) * std::uint64_t(t[2]), 1024);
+    limit("threads of a group", std::uint64_t(t[0]) * std::uint64_t(t[1]) * std::uint64_t(t[2]),
+          1024);
     limit("floats of shared memory", std::uint64_t(program.shared_floats()), kMaxSharedFloats);
     for (std::uint32_t n : groups) limit("groups of a dispatch in one dimension", n, kMaxDispatch);
 }

@@ -14,8 +14,8 @@
 //     };
 //
 // Each for_each_thread runs all threads of the group, lanes across threads; its end is
-// GroupMemoryBarrierWithGroupSync, which so lies in uniform control flow by construction. Groups run
-// on any thread in any order unless the shader is ordered; a shader whose groups meet in memory
+// GroupMemoryBarrierWithGroupSync, which so lies in uniform control flow by construction. Groups
+// run on any thread in any order unless the shader is ordered; a shader whose groups meet in memory
 // (atomics, append) must be, and then runs in serial order (I-24).
 //
 // SPDX-License-Identifier: Apache-2.0
@@ -38,14 +38,14 @@ template <class I> struct int3 {
 };
 
 template <class T> struct ComputeInput {
-    int3<std::int32_t> group_id;         ///< SV_GroupID
-    int3<int_of<T>> group_thread_id;     ///< SV_GroupThreadID
-    int3<int_of<T>> dispatch_thread_id;  ///< SV_DispatchThreadID (R152)
-    int_of<T> group_index;               ///< SV_GroupIndex (R152)
+    int3<std::int32_t> group_id;        ///< SV_GroupID
+    int3<int_of<T>> group_thread_id;    ///< SV_GroupThreadID
+    int3<int_of<T>> dispatch_thread_id; ///< SV_DispatchThreadID (R152)
+    int_of<T> group_index;              ///< SV_GroupIndex (R152)
 };
 
-/// A buffer that shaders write (D3D11: RWBuffer): out-of-range loads give 0, out-of-range stores and
-/// atomics do nothing (R144). `E` is float, std::int32_t or std::uint32_t.
+/// A buffer that shaders write (D3D11: RWBuffer): out-of-range loads give 0, out-of-range stores
+/// and atomics do nothing (R144). `E` is float, std::int32_t or std::uint32_t.
 template <class E> class RWBuffer {
 public:
     RWBuffer() = default;
@@ -80,7 +80,8 @@ void for_each_written(RWBuffer<E> const& b, IntLanes<N> i, Work const& work)
     }
     for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
         int const l = std::countr_zero(bits);
-        if (std::size_t(i.raw[l]) < b.elements().size()) work(l, b.elements()[std::size_t(i.raw[l])]);
+        if (std::size_t(i.raw[l]) < b.elements().size())
+            work(l, b.elements()[std::size_t(i.raw[l])]);
     }
 }
 } // namespace detail

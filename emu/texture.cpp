@@ -20,8 +20,9 @@ std::pair<std::vector<float>, int> make_mip_levels(std::span<float const> texels
                     float sum = 0;
                     for (int j = 0; j < step_y; ++j)
                         for (int i = 0; i < step_x; ++i)
-                            sum += all[from + 4 * (std::size_t(y * step_y + j) * std::size_t(width) +
-                                                   std::size_t(x * step_x + i)) +
+                            sum += all[from +
+                                       4 * (std::size_t(y * step_y + j) * std::size_t(width) +
+                                            std::size_t(x * step_x + i)) +
                                        k];
                     all.push_back(sum * (1.0f / float(step_x * step_y)));
                 }

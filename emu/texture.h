@@ -153,7 +153,8 @@ float4<T> load(Texture2D const& texture, int_of<T> x, int_of<T> y, int level = 0
 {
     bool const exists = texture.bound() && level >= 0 && level < texture.levels() && slice >= 0 &&
                         slice < texture.slices();
-    int const width = exists ? texture.width(level) : 0, height = exists ? texture.height(level) : 0;
+    int const width = exists ? texture.width(level) : 0,
+              height = exists ? texture.height(level) : 0;
     std::size_t const first = exists ? texture.index(0, 0, level, slice) : 0;
     auto const texel = [&](std::int32_t i, std::int32_t j) {
         bool const in = i >= 0 && j >= 0 && i < width && j < height;
@@ -187,9 +188,12 @@ float4<T> sample_level(Texture2D const& texture, Sampler const& sampler, float2<
                        T slice = T(0))
 {
     return detail::sample_lanes<T>(texture, [&](int l, detail::TexelCount<T>& count) {
-        detail::SampleRequest const r{detail::lane(uv.x, l), detail::lane(uv.y, l),
+        detail::SampleRequest const r{detail::lane(uv.x, l),
+                                      detail::lane(uv.y, l),
                                       detail::lane(lod, l),
-                                      fixed_from_float(detail::lane(slice, l), 24, 0), false, 0};
+                                      fixed_from_float(detail::lane(slice, l), 24, 0),
+                                      false,
+                                      0};
         return detail::sample_texture(texture, sampler, r, count.read, &count);
     });
 }
@@ -203,9 +207,12 @@ float4<T> sample_grad(Texture2D const& texture, Sampler const& sampler, float2<T
     return detail::sample_lanes<T>(texture, [&](int l, detail::TexelCount<T>& count) {
         float const lod = detail::lod_of(detail::lane(dx.x, l) * w, detail::lane(dx.y, l) * h,
                                          detail::lane(dy.x, l) * w, detail::lane(dy.y, l) * h);
-        detail::SampleRequest const r{detail::lane(uv.x, l), detail::lane(uv.y, l),
+        detail::SampleRequest const r{detail::lane(uv.x, l),
+                                      detail::lane(uv.y, l),
                                       lod + detail::lane(bias, l),
-                                      fixed_from_float(detail::lane(slice, l), 24, 0), false, 0};
+                                      fixed_from_float(detail::lane(slice, l), 24, 0),
+                                      false,
+                                      0};
         return detail::sample_texture(texture, sampler, r, count.read, &count);
     });
 }
@@ -224,14 +231,14 @@ template <class T>
 T sample_cmp_level_zero(Texture2D const& texture, Sampler const& sampler, float2<T> const& uv,
                         T reference)
 {
-    return detail::sample_lanes<T>(texture,
-                                   [&](int l, detail::TexelCount<T>& count) {
-                                       detail::SampleRequest const r{
-                                           detail::lane(uv.x, l), detail::lane(uv.y, l), 0, 0, true,
-                                           detail::lane(reference, l)};
-                                       return detail::sample_texture(texture, sampler, r,
-                                                                     count.read, &count);
-                                   })
+    return detail::sample_lanes<T>(
+               texture,
+               [&](int l, detail::TexelCount<T>& count) {
+                   detail::SampleRequest const r{
+                       detail::lane(uv.x, l),     detail::lane(uv.y, l), 0, 0, true,
+                       detail::lane(reference, l)};
+                   return detail::sample_texture(texture, sampler, r, count.read, &count);
+               })
         .x;
 }
 

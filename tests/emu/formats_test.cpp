@@ -48,7 +48,7 @@ TEST(Formats, R20NarrowFloatsRoundTowardZero)
     EXPECT_EQ(v[3], 1.0f);
 }
 
-TEST(Formats, R21UnormAndSnormReachEveryCodeAndNeverDecrease)
+TEST(Formats, R21I8UnormAndSnormReachEveryCodeAndNeverDecrease)
 {
     std::uint32_t last = 0;
     for (int i = 0; i <= 255 * 64; ++i) {

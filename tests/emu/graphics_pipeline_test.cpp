@@ -87,6 +87,10 @@ template <int kPoints> struct Bilinear {
     }
 };
 
+struct TriDomain : Bilinear<4> {
+    static constexpr TessellatorDomain kDomain = TessellatorDomain::Tri;
+};
+
 GraphicsPipelineDesc patch_desc(Hull const& hull = {})
 {
     GraphicsPipelineDesc d;
@@ -109,7 +113,7 @@ void expect_refused(GraphicsPipelineDesc d, char const* word)
     }
 }
 
-TEST(GraphicsPipeline, RefusesWhatD3D11RefusesAndNamesValueAndLimit)
+TEST(GraphicsPipeline, R3R49R50R79RefusesWhatD3D11RefusesAndNamesValueAndLimit)
 {
     EXPECT_NO_THROW(GraphicsPipeline{patch_desc()});
     auto d = patch_desc();
@@ -129,6 +133,9 @@ TEST(GraphicsPipeline, RefusesWhatD3D11RefusesAndNamesValueAndLimit)
     d = patch_desc();
     d.domain_shader = make_domain_program(Bilinear<5>{}, {});
     expect_refused(d, "number of control points");
+    d = patch_desc();
+    d.domain_shader = make_domain_program(TriDomain{}, {});
+    expect_refused(d, "R79");
     d = patch_desc();
     d.output_primitive = OutputPrimitive::Line;
     expect_refused(d, "R75");
@@ -176,7 +183,7 @@ DrawStatistics draw_patches(std::size_t patches, VertexCacheModel cache, Target&
     return draw(GraphicsPipeline(patch_desc()), call, &raster, {}, ThreadPool(2), options);
 }
 
-TEST(PipelineStatistics, FollowRulesR42R43R156ToR163)
+TEST(PipelineStatistics, R42R43R156R157R158R159R160R161R162R163I2I16CountATessellatedDraw)
 {
     for (auto kind : {VertexCacheModel::Kind::None, VertexCacheModel::Kind::Fifo,
                       VertexCacheModel::Kind::Infinite}) {
@@ -195,7 +202,7 @@ TEST(PipelineStatistics, FollowRulesR42R43R156ToR163)
     }
 }
 
-TEST(PipelineStatistics, NonIndexedVerticesNeverHitTheCache) // rule R42
+TEST(PipelineStatistics, R42I3NonIndexedVerticesNeverHitTheCache)
 {
     std::vector<float> vertices = quad_vertices();
     vertices.insert(vertices.end(), vertices.begin(), vertices.begin() + 14);
@@ -216,7 +223,7 @@ TEST(PipelineStatistics, NonIndexedVerticesNeverHitTheCache) // rule R42
     EXPECT_EQ(p.CInvocations, 2u);
 }
 
-TEST(Draw, WithoutATargetRasterizationIsOff) // rule R5
+TEST(Draw, R5WithoutATargetRasterizationIsOff)
 {
     std::vector<float> const vertices = quad_vertices();
     DrawCall call;
@@ -234,7 +241,7 @@ TEST(Draw, WithoutATargetRasterizationIsOff) // rule R5
     EXPECT_EQ(visited, 9u);
 }
 
-TEST(Draw, ReadsZeroPastTheVertexBuffer) // rule R35
+TEST(Draw, R35ReadsZeroPastTheVertexBuffer)
 {
     std::vector<float> const vertices = quad_vertices();
     std::vector<std::uint32_t> const indices{0, 1, 2, 77};
@@ -269,7 +276,7 @@ TEST(Draw, RefusesACallThatDoesNotFitThePipeline)
 }
 
 // The shader's arithmetic flushes denormals in every worker (R9).
-TEST(Draw, ShadersFlushDenormals)
+TEST(Draw, R9ShadersFlushDenormalsInEveryWorker)
 {
     std::vector<float> vertices = quad_vertices();
     for (std::size_t i = 0; i < 4; ++i) vertices[7 * i] = 1e-40f;

@@ -8,8 +8,8 @@
 namespace tessemu {
 namespace {
 
-TEST(InputAssembler,
-     DropsPartialPrimitives) // rule R29: 32-point patches and 63 vertices are one patch
+// 32-point patches and 63 vertices are one patch.
+TEST(InputAssembler, R29R166I23DropsPartialPrimitivesAndDoesNotCountThem)
 {
     DrawCall call;
     call.control_points = 32;
@@ -19,7 +19,7 @@ TEST(InputAssembler,
     EXPECT_EQ(p.vertices.size(), 32u);
 }
 
-TEST(InputAssembler, TheAllOnesIndexCutsPatchListsToo) // rule R31
+TEST(InputAssembler, R31TheAllOnesIndexCutsPatchListsToo)
 {
     std::vector<std::uint16_t> const i16{0, 1, 2, 0xffff, 3, 4, 5, 6, 7};
     DrawCall call;

@@ -117,7 +117,7 @@ bool covers(std::array<float, 4> const* t, int px, int py)
     return true;
 }
 
-RC_GTEST_PROP(Rasterizer, CoverageEqualsTheRuleInExactIntegers, ())
+RC_GTEST_PROP(Rasterizer, R101R102CoverageEqualsTheRuleInExactIntegers, ())
 {
     auto const t = *soup();
     Scene const s = draw_triangles(t);
@@ -133,7 +133,7 @@ RC_GTEST_PROP(Rasterizer, CoverageEqualsTheRuleInExactIntegers, ())
 }
 
 // Nearest depth wins; on equal depth the first triangle stays (LESS).
-RC_GTEST_PROP(Rasterizer, FlatTrianglesResolveByDepthThenOrder, ())
+RC_GTEST_PROP(Rasterizer, R1FlatTrianglesResolveByDepthThenOrder, ())
 {
     auto t = *soup();
     for (std::size_t i = 0; i < t.size(); ++i) t[i][2] = t[i / 3 * 3][2];
@@ -148,7 +148,7 @@ RC_GTEST_PROP(Rasterizer, FlatTrianglesResolveByDepthThenOrder, ())
         }
 }
 
-RC_GTEST_PROP(Rasterizer, ThreadsDoNotChangeABit, ())
+RC_GTEST_PROP(Rasterizer, R1ThreadsDoNotChangeABit, ())
 {
     auto const t = *soup();
     Scene const a = draw_triangles(t, CullMode::None, false, {}, 1),
@@ -194,7 +194,7 @@ TEST(Rasterizer, TwoTrianglesOnOneEdgeCoverThirtySixPixels)
     }
 }
 
-TEST(Rasterizer, PositionsSnapToTheNearestEvenTie) // rules R24, R101
+TEST(Rasterizer, R24R101PositionsSnapToTheNearestEvenTie)
 {
     // A left edge at 10.5 + 1/512 pixel: a tie between 10.5 and 10.5 + 1/256; even is 10.5, and the
     // centre of pixel 10 then lies on a left edge. At 10.5 + 3/512 the even neighbour is 10.5 +
@@ -206,7 +206,7 @@ TEST(Rasterizer, PositionsSnapToTheNearestEvenTie) // rules R24, R101
     }
 }
 
-TEST(Rasterizer, CullsByScreenOrientation) // rule R104
+TEST(Rasterizer, R104R105CullsByScreenOrientation)
 {
     std::vector<std::array<float, 4>> const clockwise{
         {10, 10, 0.5f, 1}, {50, 10, 0.5f, 1}, {10, 50, 0.5f, 1}};
@@ -215,7 +215,7 @@ TEST(Rasterizer, CullsByScreenOrientation) // rule R104
     EXPECT_EQ(draw_triangles(clockwise).color.load(15, 15)[3], 1.0f);
 }
 
-TEST(Rasterizer, TheScissorCutsHalfOpen) // rule R98
+TEST(Rasterizer, R98TheScissorCutsHalfOpen)
 {
     std::vector<std::array<float, 4>> const all{
         {0, 0, 0.5f, 1}, {3 * kSize, 0, 0.5f, 1}, {0, 3 * kSize, 0.5f, 1}};
@@ -227,7 +227,7 @@ TEST(Rasterizer, TheScissorCutsHalfOpen) // rule R98
 }
 
 // Perspective: attributes are linear in the plane, not on the screen (R120).
-TEST(Rasterizer, AttributesArePerspectiveCorrect)
+TEST(Rasterizer, R120AttributesArePerspectiveCorrect)
 {
     std::vector<std::array<float, 4>> const t{{0, 0, 0.5f, 1}, {96, 0, 0.5f, 4}, {0, 96, 0.5f, 1}};
     Scene const s = draw_triangles(t);
@@ -242,7 +242,7 @@ TEST(Rasterizer, AttributesArePerspectiveCorrect)
 }
 
 // Near and far planes cut; the cut triangle counts what is left (R90, R162).
-TEST(Clipping, CutsAtNearAndFarAndCountsPrimitives)
+TEST(Clipping, R90R162CutsAtNearAndFarAndCountsPrimitives)
 {
     std::vector<std::array<float, 4>> const through{
         {10, 10, -0.5f, 1}, {80, 10, 0.5f, 1}, {10, 80, 0.5f, 1}};

@@ -48,7 +48,7 @@ std::uint64_t fnv(std::uint64_t h, std::uint32_t word)
     return h;
 }
 
-TEST(Tessellator, AllGoldenCasesMatchBitForBit)
+TEST(Tessellator, I1I10AllGoldenCasesMatchBitForBit)
 {
     std::istringstream cases(test::read_text(test::golden("tessellator/cases.txt")));
     std::istringstream expected(test::read_text(test::golden("tessellator/expected.txt")));
@@ -185,7 +185,7 @@ RC_GTEST_PROP(Tessellator, EveryInnerEdgeHasExactlyTwoTriangles, ())
     RC_ASSERT(open == ring);
 }
 
-TEST(Tessellator, OneDimensionalGoldenPositions) // rule R64
+TEST(Tessellator, R64OneDimensionalGoldenPositions)
 {
     using V = std::vector<std::uint32_t>;
     auto const at = [](double f) { return std::uint32_t(f * 65536); };
@@ -196,7 +196,7 @@ TEST(Tessellator, OneDimensionalGoldenPositions) // rule R64
     EXPECT_EQ(span_positions(at(4.5), false), (V{0, 15019, 17750, 32768, 47786, 50517, 65536}));
 }
 
-TEST(Tessellator, CullsByEdgesAndClampsInsides) // rules R56 to R58
+TEST(Tessellator, R56R57R58CullsByEdgesAndClampsInsides)
 {
     TessellatorState const s{TessellatorDomain::Quad, Partitioning::Integer,
                              OutputPrimitive::TriangleCw};

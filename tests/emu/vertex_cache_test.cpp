@@ -40,7 +40,7 @@ private:
     std::deque<std::uint32_t> held_;
 };
 
-RC_GTEST_PROP(VertexCache, HitsAndMissesEqualTheDefinition, ())
+RC_GTEST_PROP(VertexCache, R41I3HitsAndMissesEqualTheDefinition, ())
 {
     auto const kind = *rc::gen::element(Kind::None, Kind::Fifo, Kind::Lru, Kind::Infinite);
     VertexCacheModel const model{kind, *rc::gen::inRange(1u, 9u)};

@@ -95,7 +95,8 @@ TEST(TriangleStream, CagesEqualTheReadersRasterizerAtFactorsOneTo64)
 
 TEST(TriangleStream, PatchesThatLeaveTheScreenEqualTheReadersRasterizer)
 {
-    for (float focal : {2.0f, 5.0f, 14.0f}) // up to patches wider than the 126 pixels of the fast way
+    for (float focal :
+         {2.0f, 5.0f, 14.0f}) // up to patches wider than the 126 pixels of the fast way
         for (float tess : {1.0f, 4.0f, 30.0f})
             expect_same({"jug", tess, focal, CullMode::None, Partitioning::FractionalOdd}, 16, 2);
 }

@@ -70,7 +70,7 @@ void expect_closed(std::string const& model)
         }
 }
 
-TEST(GregoryStencil, SharedEdgesOfBuiltInCagesHaveEqualBits)
+TEST(GregoryStencil, R68V16SharedEdgesOfBuiltInCagesHaveEqualBits)
 {
     for (char const* model : {"jug", "spindle", "saddle_star"}) expect_closed(model);
 }

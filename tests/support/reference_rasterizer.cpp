@@ -44,12 +44,12 @@ ReferenceRasterizer::ReferenceRasterizer(RasterTarget const& state,
 ReferenceRasterizer::Screen ReferenceRasterizer::project(Vertex const& v) const
 {
     float const inverse_w = 1.0f / v[3];
-    float const x = v[0] * inverse_w * (viewport_.width * 0.5f) +
-                    (viewport_.x + viewport_.width * 0.5f);
-    float const y = v[1] * inverse_w * (-viewport_.height * 0.5f) +
-                    (viewport_.y + viewport_.height * 0.5f);
-    float const z = v[2] * inverse_w * (viewport_.max_depth - viewport_.min_depth) +
-                    viewport_.min_depth + 0.0f;
+    float const x =
+        v[0] * inverse_w * (viewport_.width * 0.5f) + (viewport_.x + viewport_.width * 0.5f);
+    float const y =
+        v[1] * inverse_w * (-viewport_.height * 0.5f) + (viewport_.y + viewport_.height * 0.5f);
+    float const z =
+        v[2] * inverse_w * (viewport_.max_depth - viewport_.min_depth) + viewport_.min_depth + 0.0f;
     // nearbyint rounds ties to even; the band holds clip vertices that rounding pushed past it.
     Band const band(viewport_, state_.rasterizer.guard_band_px);
     auto const snap = [](float p) { return std::int64_t(std::nearbyint(double(p) * 256)); };
@@ -69,13 +69,13 @@ void ReferenceRasterizer::triangle(std::array<std::vector<float>, 3> const& in,
     for (Vertex const& v : in) {
         float const x = v[0], y = v[1], z = v[2], w = v[3];
         if (!(std::fabs(x) + std::fabs(y) + std::fabs(z) + std::fabs(w) <= 3.402823466e38f)) return;
-        bool const out[6] = {x < -w, x > w, y < -w, y > w, z < 0, z > w};
+        bool const out[6] = {x<-w, x> w, y<-w, y> w, z<0, z> w};
         for (int i = 0; i < 6; ++i) outside[i] = outside[i] && out[i];
         float const inverse_w = 1.0f / w;
-        float const px = x * inverse_w * (viewport_.width * 0.5f) +
-                         (viewport_.x + viewport_.width * 0.5f);
-        float const py = y * inverse_w * (-viewport_.height * 0.5f) +
-                         (viewport_.y + viewport_.height * 0.5f);
+        float const px =
+            x * inverse_w * (viewport_.width * 0.5f) + (viewport_.x + viewport_.width * 0.5f);
+        float const py =
+            y * inverse_w * (-viewport_.height * 0.5f) + (viewport_.y + viewport_.height * 0.5f);
         bool const in_band =
             px >= band.left && px <= band.right && py >= band.top && py <= band.bottom;
         cut = cut || !(w > 0) || !in_band || (depth_clip && (out[4] || out[5]));
@@ -117,12 +117,10 @@ void ReferenceRasterizer::triangle(std::array<std::vector<float>, 3> const& in,
                 float const s = t * b[3] / r[3];
                 for (std::size_t k = 4; k < a.size(); ++k) {
                     auto const& modes = pixel_shader_->info().interpolation;
-                    auto const mode =
-                        k - 4 < modes.size() ? modes[k - 4] : Interpolation::Linear;
-                    r[k] = mode == Interpolation::Constant ? in[0][k]
-                           : mode == Interpolation::LinearNoperspective
-                               ? a[k] + s * (b[k] - a[k])
-                               : a[k] + t * (b[k] - a[k]);
+                    auto const mode = k - 4 < modes.size() ? modes[k - 4] : Interpolation::Linear;
+                    r[k] = mode == Interpolation::Constant              ? in[0][k]
+                           : mode == Interpolation::LinearNoperspective ? a[k] + s * (b[k] - a[k])
+                                                                        : a[k] + t * (b[k] - a[k]);
                 }
                 next.push_back(r);
             }
@@ -140,7 +138,8 @@ void ReferenceRasterizer::triangle(std::array<std::vector<float>, 3> const& in,
 void ReferenceRasterizer::draw(Vertex const* v[3], std::int32_t primitive_id, Vertex const& leading)
 {
     Screen p[3] = {project(*v[0]), project(*v[1]), project(*v[2])};
-    std::int64_t area = (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
+    std::int64_t area =
+        (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[2].x - p[0].x) * (p[1].y - p[0].y);
     bool const front = area != 0 && (area > 0) != state_.rasterizer.front_counter_clockwise;
     if (state_.rasterizer.cull == (front ? CullMode::Front : CullMode::Back) || area == 0) return;
     if (area < 0) {
@@ -185,9 +184,8 @@ void ReferenceRasterizer::draw(Vertex const* v[3], std::int32_t primitive_id, Ve
             if (!(code < stored || (or_equal && code == stored))) continue;
             ++passed;
             stored = code;
-            float const w =
-                1.0f / (p[0].inverse_w + (b1 * (p[1].inverse_w - p[0].inverse_w) +
-                                          b2 * (p[2].inverse_w - p[0].inverse_w)));
+            float const w = 1.0f / (p[0].inverse_w + (b1 * (p[1].inverse_w - p[0].inverse_w) +
+                                                      b2 * (p[2].inverse_w - p[0].inverse_w)));
             float const p1 = b1 * p[1].inverse_w * w, p2 = b2 * p[2].inverse_w * w;
             std::vector<float> attributes;
             for (std::size_t k = 0; k < pixel_shader_->info().interpolation.size(); ++k) {

@@ -77,7 +77,8 @@ struct Scene {
         depth.clear(z, stencil, ThreadPool(1));
     }
     /// A vertex at a place in pixels.
-    Scene& add(float x, float y, float z = 0.5f, float w = 1, std::array<float, 4> value = {1, 1, 1, 1})
+    Scene& add(float x, float y, float z = 0.5f, float w = 1,
+               std::array<float, 4> value = {1, 1, 1, 1})
     {
         vertices.insert(vertices.end(), {(x / (float(width) / 2) - 1) * w,
                                          (1 - y / (float(height) / 2)) * w, z * w, w});
@@ -95,8 +96,8 @@ struct Scene {
         call.set_vertices(vertices, 8);
         call.vertex_count = std::uint32_t(vertices.size() / 8);
         if (!indices.empty()) call.indices = std::span<std::uint32_t const>(indices);
-        statistics = tessemu::draw(GraphicsPipeline(desc), call, &target, {}, ThreadPool(threads),
-                                   options);
+        statistics =
+            tessemu::draw(GraphicsPipeline(desc), call, &target, {}, ThreadPool(threads), options);
         return statistics;
     }
     template <class Shader> void use(Shader const& shader)

@@ -19,8 +19,7 @@ struct Ids {
     {
         group.for_each_thread([&](ComputeInput<T> const& in) {
             using Int = int_of<T>;
-            Int const place =
-                (Int(in.group_id.x) * Int(60) + in.group_index) * Int(4);
+            Int const place = (Int(in.group_id.x) * Int(60) + in.group_index) * Int(4);
             store<T>(out, place, in.group_index);
             store<T>(out, place + Int(1), in.dispatch_thread_id.x);
             store<T>(out, place + Int(2), in.dispatch_thread_id.y);
@@ -102,9 +101,8 @@ struct Reduce {
     {
         using Int = int_of<T>;
         group.for_each_thread([&](ComputeInput<T> const& i) {
-            when<T>(i.group_index == Int(0), [&] {
-                store<T>(first_seen, Int(i.group_id.x), group.shared(Int(5)));
-            });
+            when<T>(i.group_index == Int(0),
+                    [&] { store<T>(first_seen, Int(i.group_id.x), group.shared(Int(5))); });
         });
         group.for_each_thread([&](ComputeInput<T> const& i) {
             group.store_shared(i.group_index, load<T>(in, i.dispatch_thread_id.x));
@@ -134,8 +132,8 @@ TEST(ComputeShader, R153R154I27BarriersMakeSharedMemoryVisibleAndGroupsStartPois
         shader.out = {out, 1, "out"};
         shader.first_seen = {seen, 2, "seen"};
         DrawStatistics const n =
-            dispatch(*make_compute_program(shader, Machine{lanes, Contraction::None, 0}),
-                     {5, 1, 1}, ThreadPool(3));
+            dispatch(*make_compute_program(shader, Machine{lanes, Contraction::None, 0}), {5, 1, 1},
+                     ThreadPool(3));
         for (int g = 0; g < 5; ++g) {
             EXPECT_EQ(out[std::size_t(g)], float(64 * (64 * g) + 64 * 65 / 2));
             EXPECT_TRUE(seen[std::size_t(g)] != seen[std::size_t(g)]); // not the last group's

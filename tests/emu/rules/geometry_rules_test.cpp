@@ -12,7 +12,8 @@ namespace {
 
 // Geometry shaders on scene vertices.
 
-// Hands a triangle on, its PrimitiveID doubled, its viewport chosen by value.w of the leading vertex.
+// Hands a triangle on, its PrimitiveID doubled, its viewport chosen by value.w of the leading
+// vertex.
 struct PassTriangle {
     static constexpr PrimitiveTopology kInput = PrimitiveTopology::TriangleList;
     static constexpr GeometryOutput kOutput = GeometryOutput::TriangleStrip;
@@ -127,7 +128,7 @@ TEST(GeometryShader, R83R84R85R87StripsCutStopAndExpandInInstanceOrder)
     for (float i : {0.0f, 1.0f}) strip({0, 1, 2}, i); // cut after 3; the rest is incomplete
     ASSERT_EQ(s.values.size(), 2 * expected.size());
     for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(at(i), expected[i]) << i;
-    EXPECT_EQ(s.statistics.pipeline.GSInvocations, 4u * 2);            // R161
+    EXPECT_EQ(s.statistics.pipeline.GSInvocations, 4u * 2);             // R161
     EXPECT_EQ(s.statistics.pipeline.GSPrimitives, expected.size() / 3); // complete ones only
     EXPECT_EQ(s.statistics.stream_output[0].NumPrimitivesWritten, expected.size() / 3);
     EXPECT_EQ(s.statistics.pipeline.CInvocations, 0u); // nothing is rasterized
@@ -202,7 +203,8 @@ TEST(StreamOutput, R87R89GapsStridesAndLimits)
     Scene s;
     s.call.topology = PrimitiveTopology::LineStrip;
     // y, a gap of two, x; into 24 bytes a vertex.
-    s.desc.stream_output = StreamOutputDesc{{{0, 5, 1, 2}, {0, -1, 2, 2}, {0, 4, 1, 2}}, {0, 0, 24, 0}, -1};
+    s.desc.stream_output =
+        StreamOutputDesc{{{0, 5, 1, 2}, {0, -1, 2, 2}, {0, 4, 1, 2}}, {0, 0, 24, 0}, -1};
     std::vector<std::byte> memory(1000, std::byte{0xaa});
     StreamOutputBuffer buffers[3] = {{}, {}, {memory, 0}};
     s.options.stream_output = buffers;
@@ -230,7 +232,7 @@ TEST(StreamOutput, R87R89GapsStridesAndLimits)
     EXPECT_NO_THROW(check_stream_output({{{0, 0, 128, 0}}, {512, 0, 0, 0}, 0}, 128));
 }
 
-TEST(StreamOutput, R40R76DrawAutoDrawsWhatWasStreamed)
+TEST(StreamOutput, R39R40R76DrawAutoDrawsWhatWasStreamed)
 {
     Scene s;
     s.call.topology = PrimitiveTopology::TriangleStrip;
@@ -276,7 +278,8 @@ TEST(Pipeline, R3R4I29PatchesWithoutTessellationGoToGeometryShaderOrStreamOutput
     Scene s;
     s.call.topology = PrimitiveTopology::PatchList;
     s.call.control_points = 5;
-    for (int i = 0; i < 10; ++i) s.add(3.5f + float(i / 5), 2.5f, 0.5f, 1, {float(1 << i), 0, 0, 0});
+    for (int i = 0; i < 10; ++i)
+        s.add(3.5f + float(i / 5), 2.5f, 0.5f, 1, {float(1 << i), 0, 0, 0});
     EXPECT_THROW(s.draw(), Error);
     s.desc.geometry_shader = make_geometry_program(PatchToPoint{}, {});
     EXPECT_EQ(s.draw().pipeline.GSInvocations, 2u);
@@ -346,7 +349,7 @@ struct InstanceShader {
     }
 };
 
-TEST(InputAssembler, R12R30R34InstancesRestartTheirIds)
+TEST(InputAssembler, R30R34InstancesRestartTheirIds)
 {
     Scene s;
     s.call.topology = PrimitiveTopology::PointList;
@@ -400,9 +403,9 @@ TEST(PipelineStatistics, R42R156R157StripsAndListsOfEqualIndices)
 TEST(PipelineStatistics, R162ClippingCountsWhatGoesInAndWhatComesOut)
 {
     Scene s;
-    s.add_full();                                       // whole
+    s.add_full();                                         // whole
     s.add(0, 0, -0.5f).add(32, 0, 0.5f).add(0, 32, 0.5f); // cut into two
-    s.add(0, 0, 2).add(32, 0, 2).add(0, 32, 2);          // outside
+    s.add(0, 0, 2).add(32, 0, 2).add(0, 32, 2);           // outside
     PipelineStatistics const p = s.draw().pipeline;
     EXPECT_EQ(p.CInvocations, 3u);
     EXPECT_EQ(p.CPrimitives, 1u + 2 + 0);

@@ -112,8 +112,11 @@ struct EarlyDepthOut : DepthOut {
 
 TEST(PixelShader, R124R131R135WrittenDepthReplacesZAndIsClamped)
 {
-    for (auto [written, stored] : {std::pair{0.25f, 0.25f}, {7.0f, 1.0f}, {-3.0f, 0.0f},
-                                   {kNan, 0.0f}, {std::numeric_limits<float>::max(), 1.0f}}) {
+    for (auto [written, stored] : {std::pair{0.25f, 0.25f},
+                                   {7.0f, 1.0f},
+                                   {-3.0f, 0.0f},
+                                   {kNan, 0.0f},
+                                   {std::numeric_limits<float>::max(), 1.0f}}) {
         Scene s;
         s.use(DepthOut{});
         s.target.depth_stencil.depth_func = Comparison::LessEqual;
@@ -144,7 +147,8 @@ struct DepthBack {
 TEST(PixelShader, R122WritingZBackEqualsNotWritingIt)
 {
     for (Format f : {Format::D16_UNORM, Format::D24_UNORM_S8_UINT, Format::D32_FLOAT}) {
-        Scene a(16, 16, 1, Format::R32G32B32A32_FLOAT, f), b(16, 16, 1, Format::R32G32B32A32_FLOAT, f);
+        Scene a(16, 16, 1, Format::R32G32B32A32_FLOAT, f),
+            b(16, 16, 1, Format::R32G32B32A32_FLOAT, f);
         b.use(DepthBack{});
         for (Scene* s : {&a, &b}) {
             s->add(0, 0, 0.1f).add(40, 3, 0.9f, 3).add(2, 50, 0.4f, 2);
@@ -153,7 +157,8 @@ TEST(PixelShader, R122WritingZBackEqualsNotWritingIt)
         }
         for (int y = 0; y < 16; ++y)
             for (int x = 0; x < 16; ++x) {
-                ASSERT_EQ(a.depth.codes()[a.depth.index(x, y)], b.depth.codes()[b.depth.index(x, y)]);
+                ASSERT_EQ(a.depth.codes()[a.depth.index(x, y)],
+                          b.depth.codes()[b.depth.index(x, y)]);
                 ASSERT_EQ(a.color.load(x, y), b.color.load(x, y));
             }
     }
@@ -258,14 +263,11 @@ TEST(DepthTest, R133ComparesNewWithStored)
     struct {
         Comparison func;
         bool less, equal, greater;
-    } const table[] = {{Comparison::Never, false, false, false},
-                       {Comparison::Less, true, false, false},
-                       {Comparison::Equal, false, true, false},
-                       {Comparison::LessEqual, true, true, false},
-                       {Comparison::Greater, false, false, true},
-                       {Comparison::NotEqual, true, false, true},
-                       {Comparison::GreaterEqual, false, true, true},
-                       {Comparison::Always, true, true, true}};
+    } const table[] = {
+        {Comparison::Never, false, false, false},      {Comparison::Less, true, false, false},
+        {Comparison::Equal, false, true, false},       {Comparison::LessEqual, true, true, false},
+        {Comparison::Greater, false, false, true},     {Comparison::NotEqual, true, false, true},
+        {Comparison::GreaterEqual, false, true, true}, {Comparison::Always, true, true, true}};
     for (auto const& row : table)
         for (auto [z, pass] :
              {std::pair{0.25f, row.less}, {0.5f, row.equal}, {0.75f, row.greater}}) {
@@ -370,8 +372,8 @@ TEST(Blending, R136R137I20OperationsFactorsAndClamps)
     EXPECT_EQ(run(Blend::DestColor, Blend::DestAlpha, BlendOp::Add, FormatType::Float)[0],
               0.5f * 0.25f + 0.25f * 0.75f);
     // Float targets: NaN propagates even with weight 0.
-    RenderTargetBlend zero{true, Blend::Zero, Blend::One, BlendOp::Add,
-                           Blend::Zero, Blend::One, BlendOp::Add, 0xf};
+    RenderTargetBlend zero{true,        Blend::Zero, Blend::One,   BlendOp::Add,
+                           Blend::Zero, Blend::One,  BlendOp::Add, 0xf};
     EXPECT_TRUE(std::isnan(blend(zero, f, FormatType::Float, {kNan, 0, 0, 0}, s1, d)[0]));
     EXPECT_EQ(blend(zero, f, FormatType::Unorm, {kNan, 0, 0, 0}, s1, d)[0], 0.25f);
 }
@@ -399,8 +401,8 @@ TEST(Blending, R138MasksStopWritesOnlyAndSrgbBlendsInLinearSpace)
 {
     Scene s(16, 16, 1, Format::R8G8B8A8_UNORM_SRGB);
     s.clear({0.25f, 0.25f, 0.25f, 0.5f});
-    s.target.blend.target[0] = {true, Blend::DestAlpha, Blend::One, BlendOp::Add,
-                                Blend::Zero, Blend::Zero, BlendOp::Add, 0b0101};
+    s.target.blend.target[0] = {true,        Blend::DestAlpha, Blend::One,   BlendOp::Add,
+                                Blend::Zero, Blend::Zero,      BlendOp::Add, 0b0101};
     s.add_full(0.5f, {0.5f, 0.5f, 0.5f, 1});
     float const before = s.at(1, 1, 1), alpha = s.at(1, 1, 3);
     s.draw();

@@ -27,14 +27,13 @@ template <class T> struct Distances {
 struct DistanceShader {
     template <class T> using Input = SceneVertex<T>;
     template <class T> using Output = Distances<T>;
-    template <class T>
-    Distances<T> operator()(VertexInput<T> const&, SceneVertex<T> const& v) const
+    template <class T> Distances<T> operator()(VertexInput<T> const&, SceneVertex<T> const& v) const
     {
         return {v.position, v.value, v.value.y, v.value.z};
     }
 };
 
-TEST(Clipping, R90ClipsDepthExactlyAndXAndYToTheGuardBandOnly)
+TEST(Clipping, R90I12ClipsDepthExactlyAndXAndYToTheGuardBandOnly)
 {
     Scene s;
     s.add(0, 0, -0.5f).add(32, 0, 0.5f).add(0, 32, 0.5f);
@@ -219,7 +218,7 @@ TEST(Rasterizer, R100R112PixelCentresLieAtOneHalfAndTargetsReach16384)
     EXPECT_THROW(ColorTarget(16385, 1), LimitError);
 }
 
-TEST(Rasterizer, R102R103SharedEdgesCoverEachSampleOnceAtEverySampleCount)
+TEST(Rasterizer, R102R103I15SharedEdgesCoverEachSampleOnceAtEverySampleCount)
 {
     // A fan of thin triangles around a point that is no pixel centre.
     for (int samples : {1, 2, 4, 8}) {
@@ -277,9 +276,9 @@ TEST(Lines, R106I19DrawThePixelsWhoseDiamondIsLeft)
     EXPECT_EQ(line_pixels(4.5f, 2.5f, 1.5f, 2.5f), " 2,2 3,2 4,2");
     EXPECT_EQ(line_pixels(2.5f, 1.5f, 2.5f, 4.5f), " 2,1 2,2 2,3");
     EXPECT_EQ(line_pixels(1.5f, 1.5f, 4.5f, 4.5f), " 1,1 2,2 3,3");
-    EXPECT_EQ(line_pixels(2.25f, 2.5f, 2.75f, 2.5f), "");       // inside one diamond
-    EXPECT_EQ(line_pixels(2.5f, 2.5f, 3.25f, 2.5f), " 2,2");    // out into the gap
-    EXPECT_EQ(line_pixels(2.5f, 2.5f, 2.5f, 2.5f), "");         // no length
+    EXPECT_EQ(line_pixels(2.25f, 2.5f, 2.75f, 2.5f), "");    // inside one diamond
+    EXPECT_EQ(line_pixels(2.5f, 2.5f, 3.25f, 2.5f), " 2,2"); // out into the gap
+    EXPECT_EQ(line_pixels(2.5f, 2.5f, 2.5f, 2.5f), "");      // no length
     // Along y = 3 exactly, between rows: the bottom corners of row 2's diamonds belong to them.
     EXPECT_EQ(line_pixels(1.0f, 3.0f, 5.0f, 3.0f), " 1,2 2,2 3,2 4,2");
     // Along x = 3, y-major: the right corners of column 2 belong to it.
@@ -451,7 +450,7 @@ TEST(Multisampling, R114R121SampleModesShadeEverySample)
 
 TEST(Multisampling, R115R116SamplesLieInTheStandardPatternsAndResolveToTheirMean)
 {
-    std::vector<SampleOffset> const eight{{1, -3}, {-1, 3}, {5, 1},  {-3, -5},
+    std::vector<SampleOffset> const eight{{1, -3}, {-1, 3},  {5, 1}, {-3, -5},
                                           {-5, 5}, {-7, -1}, {3, 7}, {7, -7}};
     for (std::size_t i = 0; i < 8; ++i) {
         EXPECT_EQ(sample_pattern(8)[i].x, eight[i].x);
@@ -479,8 +478,8 @@ TEST(Multisampling, R115R116SamplesLieInTheStandardPatternsAndResolveToTheirMean
 struct Show {
     template <class T> struct In {
         float2<T> centroid, centre;
-        static constexpr std::array<Interpolation, 2> kInterpolation{
-            Interpolation::LinearCentroid, Interpolation::Linear};
+        static constexpr std::array<Interpolation, 2> kInterpolation{Interpolation::LinearCentroid,
+                                                                     Interpolation::Linear};
         static constexpr auto signature() { return std::tuple{&In::centroid, &In::centre}; }
     };
     template <class T> using Input = In<T>;

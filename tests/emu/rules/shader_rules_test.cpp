@@ -46,7 +46,14 @@ TEST(Arithmetic, R9R13DenormalsFlushAtEveryOperation)
     EXPECT_EQ(bits((L(-0.0f) + L(zero)).raw[0]), 0u); // -0 + 0 = +0
 }
 
-TEST(Arithmetic, R11SpecialValues)
+TEST(Arithmetic, I9LargeIntegersRoundToNearestEven)
+{
+    for (auto [i, f] :
+         {std::pair{16777217, 16777216.0f}, {16777219, 16777220.0f}, {-16777217, -16777216.0f}})
+        EXPECT_EQ(L(IntLanes<8>(i)).raw[3], f);
+}
+
+TEST(Arithmetic, R11I4SpecialValues)
 {
     volatile float zero = 0, inf = kInf, minus = -2;
     L const z(zero), i(inf);

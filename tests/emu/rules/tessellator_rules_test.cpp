@@ -84,9 +84,9 @@ int edges(D domain)
 std::vector<TessFactors> level_sets()
 {
     std::vector<TessFactors> sets{
-        {1, 1, 1, 1, 1, 1},           {15, 42, 10, 12, 63, 24}, {6, 8, 7, 9, 3, 2},
-        {2, 3, 1, 4, 4, 6},           {6, 8, 7, 9, 2, 2},       {1, 1, 1, 1, 5, 6},
-        {2, 3, 1, 4, 1, 6},           {2, 3, 1, 4, 5, 1},       {2.9f, 3.4f, 1.5f, 4.1f, 5.2f, 1.6f}};
+        {1, 1, 1, 1, 1, 1}, {15, 42, 10, 12, 63, 24}, {6, 8, 7, 9, 3, 2},
+        {2, 3, 1, 4, 4, 6}, {6, 8, 7, 9, 2, 2},       {1, 1, 1, 1, 5, 6},
+        {2, 3, 1, 4, 1, 6}, {2, 3, 1, 4, 5, 1},       {2.9f, 3.4f, 1.5f, 4.1f, 5.2f, 1.6f}};
     std::uint32_t seed = 7;
     for (int i = 0; i < 10; ++i) {
         TessFactors f;
@@ -105,10 +105,11 @@ TessFactors of(D domain, TessFactors f)
     return f;
 }
 
-TEST(Tessellator, R72R73CountsFollowTheFormulas)
+TEST(Tessellator, R72R73V10CountsFollowTheFormulas)
 {
     auto const clamp = [](P p, float x, bool inside, bool frame) {
-        float const low = p == P::FractionalEven ? 2.0f : 1.0f, high = p == P::FractionalOdd ? 63.0f : 64.0f;
+        float const low = p == P::FractionalEven ? 2.0f : 1.0f,
+                    high = p == P::FractionalOdd ? 63.0f : 64.0f;
         if (!(x >= low)) x = low;
         x = std::min(x, high);
         int n = int(std::ceil(x));
@@ -151,7 +152,7 @@ TEST(Tessellator, R72R73CountsFollowTheFormulas)
         EXPECT_EQ(tessellated(D::Quad, p, uniform(1)).points(), n); // R72
 }
 
-TEST(Tessellator, R56R57R58R59R60ClampAndRoundAsPrescribed)
+TEST(Tessellator, R56R57R58R59R60I11ClampAndRoundAsPrescribed)
 {
     TessellatorState state{D::Quad, P::Integer, O::TriangleCw};
     auto const fixed = [&](P p, float edge, float inside) {
@@ -187,10 +188,11 @@ TEST(Tessellator, R61R62R63SegmentsGrowByPairsAndMeetTheIntegerPlaces)
         }
 }
 
-TEST(Tessellator, R65R66V2V3V4V8V9EdgesDependOnTheirFactorAloneAndAreSymmetric)
+TEST(Tessellator, R65R66V2V3V4V8V9V18EdgesDependOnTheirFactorAloneAndAreSymmetric)
 {
     for (P p : kSpacings)
-        for (float level : {1.0f, 1.2f, 1.9f, 2.3f, 2.8f, 3.3f, 3.8f, 10.2f, 1.6f, 24.4f, 24.7f, 63.0f}) {
+        for (float level :
+             {1.0f, 1.2f, 1.9f, 2.3f, 2.8f, 3.3f, 3.8f, 10.2f, 1.6f, 24.4f, 24.7f, 63.0f}) {
             std::set<std::uint32_t> first;
             for (D domain : {D::Quad, D::Tri})
                 for (int k = 0; k < edges(domain); ++k)
@@ -273,10 +275,10 @@ TEST(Tessellator, R70R71V6V7TrianglesInsideDependOnInsideFactorsOnly)
                             outer = outer || on_edge(domain, k, q);
                             zero = zero || (k == 0 && on_edge(domain, 0, q));
                         }
-                    // Corners lie on two edges: only triangles with two points on edge 0 are its own.
-                    int const on = int(std::count_if(r.begin(), r.end(), [&](Point const& q) {
-                        return on_edge(domain, 0, q);
-                    }));
+                    // Corners lie on two edges: only triangles with two points on edge 0 are its
+                    // own.
+                    int const on = int(std::count_if(
+                        r.begin(), r.end(), [&](Point const& q) { return on_edge(domain, 0, q); }));
                     if (!outer) in.insert(r);
                     if (zero && on == 2) edge0.insert(r);
                 }
@@ -295,10 +297,10 @@ TEST(Tessellator, R74V14IsolinesLieAtIOverDensityAndTheirSpacingFollowsTheDetail
     EXPECT_EQ(t.indices.size(), 2u * 12);
     EXPECT_EQ(*std::max_element(t.v.begin(), t.v.end()), 43691u); // never at v = 1
     for (float detail = 7; detail < 62.4f; detail += detail < 9.95f ? 0.1f : 1) {
-        TessellatedPatch const l = tessellated(D::Isoline, P::FractionalOdd, {1, detail, 0, 0, 0, 0}, O::Line);
+        TessellatedPatch const l =
+            tessellated(D::Isoline, P::FractionalOdd, {1, detail, 0, 0, 0, 0}, O::Line);
         std::map<std::uint32_t, int> lengths; // within 0.001
-        for (std::size_t i = 0; i + 1 < l.points(); ++i)
-            ++lengths[(l.u[i + 1] - l.u[i] + 32) / 66];
+        for (std::size_t i = 0; i + 1 < l.points(); ++i) ++lengths[(l.u[i + 1] - l.u[i] + 32) / 66];
         EXPECT_EQ(l.u.front(), 0u);
         EXPECT_EQ(l.u.back(), kFixedOne);
         std::size_t groups = 0;
@@ -327,9 +329,10 @@ TEST(Tessellator, R75R76R77R78I10PointOutputGivesEachPointOnce)
 
 TEST(Tessellator, V11V12V13WholeLevelsGiveTheAnalyticGrid)
 {
-    for (auto [p, m, n] : {std::tuple{P::Integer, 4, 7}, {P::FractionalOdd, 5, 9}, {P::FractionalEven, 6, 4}}) {
-        TessellatedPatch const t = tessellated(
-            D::Quad, p, {float(n), float(m), float(n), float(m), float(m), float(n)});
+    for (auto [p, m, n] :
+         {std::tuple{P::Integer, 4, 7}, {P::FractionalOdd, 5, 9}, {P::FractionalEven, 6, 4}}) {
+        TessellatedPatch const t =
+            tessellated(D::Quad, p, {float(n), float(m), float(n), float(m), float(m), float(n)});
         EXPECT_EQ(t.points(), std::size_t((m + 1) * (n + 1)));
         for (std::uint32_t i = 0; i < t.points(); ++i) {
             double const u = t.u[i] / 65536.0 * m, v = t.v[i] / 65536.0 * n;
@@ -352,10 +355,26 @@ TEST(Tessellator, V15NonPositiveRelevantLevelsDiscard)
                 TessFactors f = uniform(3);
                 f[i] = bad;
                 bool const relevant = int(i) < edge_factor_count(domain);
-                EXPECT_EQ(tessellated(domain, P::Integer, f, domain == D::Isoline ? O::Line : O::TriangleCw)
+                EXPECT_EQ(tessellated(domain, P::Integer, f,
+                                      domain == D::Isoline ? O::Line : O::TriangleCw)
                                   .points() == 0,
                           relevant);
             }
+}
+
+TEST(Tessellator, R52FactorsBelongToTheirEdgesInDirect3DsOrder)
+{
+    for (D domain : {D::Quad, D::Tri}) {
+        TessFactors f{3, 4, 5, 6, 7, 7};
+        if (domain == D::Tri) f[3] = 7;
+        TessellatedPatch const t = tessellated(domain, P::Integer, f);
+        for (int k = 0; k < edges(domain); ++k)
+            EXPECT_EQ(edge_points(domain, t, k).size(), std::size_t(3 + k + 1));
+    }
+    // Isoline: density along v, then detail along u.
+    TessellatedPatch const t = tessellated(D::Isoline, P::Integer, {2, 5, 0, 0, 0, 0}, O::Line);
+    EXPECT_EQ(std::set<std::uint32_t>(t.v.begin(), t.v.end()).size(), 2u);
+    EXPECT_EQ(std::set<std::uint32_t>(t.u.begin(), t.u.end()).size(), 6u);
 }
 
 // V17: a tessellated quad over the whole viewport.
@@ -429,6 +448,26 @@ TEST(Tessellator, R69V17WindingFrontFaceAndFlipDecideWhetherAQuadIsDrawn)
                     bool const front = clockwise != front_ccw;
                     EXPECT_EQ(s.covered(), front == (cull == CullMode::Back) ? 32 * 32 : 0);
                 }
+}
+
+TEST(Tessellator, R2R54R78I1PatchesLeaveThePipelineInOrder)
+{
+    Scene s(32, 32);
+    s.call.topology = PrimitiveTopology::PatchList;
+    s.call.control_points = 1;
+    s.desc.hull_shader = make_hull_program(FlatHull{3}, {});
+    s.desc.domain_shader = make_domain_program(FlatDomain{}, {});
+    s.desc.input_control_points = 1;
+    for (int i = 0; i < 100; ++i) s.add(0, 0);
+    s.call.set_vertices(s.vertices, 8);
+    s.call.vertex_count = 100;
+    for (int threads : {1, 4}) {
+        std::uint32_t next = 0;
+        draw(
+            GraphicsPipeline(s.desc), s.call, nullptr,
+            [&](ShadedPatch const& p) { EXPECT_EQ(p.primitive_id, next++); }, ThreadPool(threads));
+        EXPECT_EQ(next, 100u);
+    }
 }
 
 TEST(Tessellator, R75PointsAndLinesOfATessellatedPatchAreDrawn)

@@ -52,10 +52,13 @@ TEST(Texture, R142LoadOutOfRangeInAnyIndexGivesZero)
     };
     EXPECT_EQ(red(3, 0, 0, 1), 3.0f);
     EXPECT_EQ(load<T>(texture, IntLanes<8>(1), IntLanes<8>(1), 1, 1).w.raw[3], 1.0f);
-    for (auto [x, y, l, s] : {std::array{4, 0, 0, 0}, {0, -1, 0, 0}, {0, 0, 3, 0}, {0, 0, 0, 2},
-                              {0, 0, -1, 0}, {2, 0, 1, 0}})
-        EXPECT_EQ(load<T>(texture, IntLanes<8>(x), IntLanes<8>(y), l, s).w.raw[0] +
-                      red(x, y, l, s),
+    for (auto [x, y, l, s] : {std::array{4, 0, 0, 0},
+                              {0, -1, 0, 0},
+                              {0, 0, 3, 0},
+                              {0, 0, 0, 2},
+                              {0, 0, -1, 0},
+                              {2, 0, 1, 0}})
+        EXPECT_EQ(load<T>(texture, IntLanes<8>(x), IntLanes<8>(y), l, s).w.raw[0] + red(x, y, l, s),
                   0.0f);
     EXPECT_EQ((load<T>(Texture2D(), IntLanes<8>(0), IntLanes<8>(0)).x.raw[0]), 0.0f);
 }
@@ -103,8 +106,8 @@ RC_GTEST_PROP(Texture, R145R146PointAndLinearFollowTheirFormulas, ())
     auto const fixed = [](double x) { return int(std::nearbyint(x * 256)); };
     for (int k = 0; k < 4; ++k) {
         if (s.mag == Filter::Point) {
-            RC_ASSERT(double(result[k]) == texel(fixed(double(u * float(w))) >> 8,
-                                                 fixed(double(v * float(h))) >> 8, k));
+            RC_ASSERT(double(result[k]) ==
+                      texel(fixed(double(u * float(w))) >> 8, fixed(double(v * float(h))) >> 8, k));
             continue;
         }
         int const x = fixed(double(u * float(w) - 0.5f)), y = fixed(double(v * float(h) - 0.5f));
