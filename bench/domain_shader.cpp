@@ -2,7 +2,7 @@
 //
 // Counters: evaluations per second, multiplications and all operations per point. The limit to
 // compare with is the hand-written kernel "fly cached 1 thr" of ../shared/peers/bound, built with
-// contraction off for the same instruction set; scripts/bench_bound.sh runs both in turn.
+// contraction off for the same instruction set; scripts/bench.sh runs both in turn.
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "shaders_cpp/gregory/domain_shaders.h"

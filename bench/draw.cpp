@@ -1,36 +1,16 @@
 // Whole draws: bigguy at 1024x1024, culling off, counting on; the jug where bigguy is not there.
 //
 // SPDX-License-Identifier: Apache-2.0
-#include "io/model.h"
-#include "pipeline/frame.h"
+#include "bench/scene.h"
 
 #include <benchmark/benchmark.h>
-
-#include <filesystem>
 
 namespace tessemu {
 namespace {
 
-struct Scene {
-    PreparedMesh mesh;
-    std::unique_ptr<PatchMesh> patches;
-    FrameSettings settings;
-
-    explicit Scene(float tess_factor)
-    {
-        std::string const bigguy = std::string(TESSEMU_SHARED_DIR) + "/models/bigguy.obj";
-        Technique const& technique = find_technique("gregory-stencil");
-        mesh = prepare_mesh(load_model(std::filesystem::exists(bigguy) ? bigguy : "jug").mesh,
-                            technique);
-        patches = technique.build(*mesh.topology, {});
-        settings.tess_factor = tess_factor;
-        settings.camera = frame_points(mesh.mesh->positions, {0.55f, 0.42f, 1}, 1);
-    }
-};
-
 void whole_frame(benchmark::State& state)
 {
-    Scene const scene(float(state.range(0)));
+    BenchScene const scene(float(state.range(0)));
     ThreadPool const threads(int(state.range(1)));
     Frame frame(scene.settings);
     for (auto _ : state) draw_frame(*scene.patches, scene.settings, threads, frame);
@@ -56,7 +36,7 @@ BENCHMARK(whole_frame)
 
 void geometry_only(benchmark::State& state)
 {
-    Scene const scene(float(state.range(0)));
+    BenchScene const scene(float(state.range(0)));
     ThreadPool const threads(1);
     DrawStatistics statistics;
     for (auto _ : state) statistics = visit_surface(*scene.patches, scene.settings, threads, {});

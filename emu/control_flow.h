@@ -64,6 +64,17 @@ template <class M, class Work, class V> constexpr V when(M mask, Work&& work, V 
     }
 }
 
+namespace detail {
+template <class M, class Work> void masked_work(M mask, Work&& work)
+{
+    execution.features |= kBranches;
+    std::uint32_t const bits = mask.bits() & execution.active_bits;
+    if (bits == 0) return;
+    Branch const branch(bits);
+    work();
+}
+} // namespace detail
+
 /// `work()` in the lanes of `mask`: for work that gives no value, such as emitting a vertex. What
 /// it writes must honour the active lanes by itself.
 template <class T, class M, class Work> constexpr void when(M mask, Work&& work)
@@ -72,11 +83,7 @@ template <class T, class M, class Work> constexpr void when(M mask, Work&& work)
     if constexpr (std::same_as<M, bool>) {
         if (mask) work();
     } else {
-        execution.features |= kBranches;
-        std::uint32_t const bits = mask.bits() & execution.active_bits;
-        if (bits == 0) return;
-        detail::Branch const branch(bits);
-        work();
+        detail::masked_work(mask, work);
     }
 }
 

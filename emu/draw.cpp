@@ -297,6 +297,8 @@ private:
         std::size_t const chunks = (all + per_chunk - 1) / per_chunk;
         std::vector<Chunk>& wave = memory_.parts().wave;
         bool const streams = raster_ && raster_->streams() && !visit_ && !stream_output_;
+        bool const counts_only =
+            !raster_ && !visit_ && !stream_output_ && stages_.tessellates() && !d_.geometry_shader;
         std::size_t per_wave = kChunksPerWave;
         for (std::size_t first = 0; first < chunks;) {
             std::size_t const n = std::min(per_wave, chunks - first);
@@ -309,6 +311,9 @@ private:
                 if (streams)
                     return raster_->stream(stages_, primitives_, vertices, p, count, wave[i],
                                            memory_.parts());
+                if (counts_only) // nobody looks at the points
+                    return stages_.run_by_patch(wave[i], primitives_, vertices, p, count,
+                                                [](std::size_t) {});
                 stages_.run(wave[i], primitives_, vertices, p, count);
                 if (raster_) raster_->assemble(stages_, wave[i]);
             });

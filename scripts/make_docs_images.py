@@ -16,6 +16,9 @@ def run(*arguments):
 def pictures():
     for name, options in (("jug.png", []), ("jug_patches.png", ["--view", "patches"])):
         run("draw", "jug", "--tess", "24", "--size", "640x640", *options, "-o", str(OUT / name))
+    for view in ("wire", "coverage"):
+        run("draw", "jug", "--tess", "5", "--view", view, "--size", "480x480", "--samples", "4",
+            "-o", str(OUT / f"jug_{view}.png"))
 
 
 def patterns():
@@ -53,9 +56,9 @@ def patterns():
 
 def stages():
     boxes = [("input assembler", 0), ("vertex cache", 0), ("vertex shader", 1), ("hull shader", 1), ("tessellator", 0),
-             ("domain shader", 1), ("assembly, clip", 0), ("rasterizer", 0), ("pixel shader", 1), ("output merger", 0)]
+             ("domain shader", 1), ("geometry shader", 1), ("stream output", 0), ("assembly, clip", 0), ("rasterizer", 0), ("pixel shader", 1), ("output merger", 0)]
     flows = ["vertices", "misses", "control points", "output points, patch constants, tess factors",
-             "domain points u, v and triangles", "clip-space vertices", "16.8 triangles", "fragments", "colours"]
+             "domain points u, v and triangles", "clip-space vertices", "whole primitives", "points, lines, triangles", "16.8 primitives", "fragments", "colours"]
     w, h, step = 170, 30, 56
     svg = ['<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 560 %d" font-family="sans-serif" font-size="13">'
            % (len(boxes) * step + 10), '<rect width="100%" height="100%" fill="white"/>']

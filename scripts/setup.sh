@@ -1,9 +1,9 @@
 # Sourced by the other scripts: goes to the project's folder and installs the Debian packages that are missing.
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-install_packages() {
+install_packages() { # further lists may be named
     local wanted missing=() package
-    wanted=$(grep -v '^#' scripts/packages.txt)
+    wanted=$(grep -hv '^#' scripts/packages.txt "$@")
     for package in $wanted; do
         dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
     done

@@ -115,7 +115,7 @@ RC_GTEST_PROP(TriangleStream, SoupsEqualTheReadersRasterizerInEveryBitAndCount, 
     raster.rasterizer.guard_band_px = s.guard;
     raster.depth_stencil.depth_func = s.func;
 
-    test::ReferenceRasterizer reference(raster, *d.pixel_shader, 9, background);
+    test::ReferenceRasterizer reference(raster, *d.pixel_shader, background);
     for (std::size_t t = 0; t < s.indices.size() / 3; ++t) {
         std::array<std::vector<float>, 3> v;
         for (std::size_t k = 0; k < 3; ++k) {

@@ -57,7 +57,7 @@ void expect_same(Case const& c, int lanes, int threads)
             if (s.stage == "rasterizer") covered += s.output_bytes / 4;
     }
     // One picture of all passes: their pixel shaders take turns.
-    test::ReferenceRasterizer sum(raster, *passes[0].pipeline.desc().pixel_shader, 7, background);
+    test::ReferenceRasterizer sum(raster, *passes[0].pipeline.desc().pixel_shader, background);
     for (DrawPass const& pass : passes) {
         sum.use(*pass.pipeline.desc().pixel_shader);
         draw(

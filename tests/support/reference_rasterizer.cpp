@@ -22,11 +22,10 @@ struct Band {
 } // namespace
 
 ReferenceRasterizer::ReferenceRasterizer(RasterTarget const& state,
-                                         PixelProgram const& pixel_shader, int components,
+                                         PixelProgram const& pixel_shader,
                                          std::array<float, 4> const& color)
     : state_(state),
       pixel_shader_(&pixel_shader),
-      components_(components),
       viewport_(state.viewports.at(0)),
       color_(state.color[0]->width(), state.color[0]->height(), state.color[0]->format()),
       depth_(color_.width(), color_.height()),

@@ -14,12 +14,12 @@ namespace tessemu::test {
 class ReferenceRasterizer {
 public:
     /// Draws into targets of its own, cleared to `color` and depth 1.
-    ReferenceRasterizer(RasterTarget const& state, PixelProgram const& pixel_shader, int components,
+    ReferenceRasterizer(RasterTarget const& state, PixelProgram const& pixel_shader,
                         std::array<float, 4> const& color);
 
     /// Shades with another shader from now on.
     void use(PixelProgram const& pixel_shader) { pixel_shader_ = &pixel_shader; }
-    /// A triangle of clip-space vertices, `components` floats each.
+    /// A triangle of clip-space vertices: position, then attributes.
     void triangle(std::array<std::vector<float>, 3> const& vertices, std::int32_t primitive_id);
 
     /// Number of pixels whose colour or depth differs in a bit.
@@ -40,7 +40,6 @@ private:
 
     RasterTarget const& state_;
     PixelProgram const* pixel_shader_;
-    int components_;
     Viewport viewport_;
     Rect bounds_;
     ColorTarget color_;
