@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Builds the program with g++ and clang at -O0 and -O2, draws and exports four cages with -j 1, 2, 3, 8 and lanes 4, 8, 16,
-# and compares the hashes of all runs. Exit 1 if any differ.
+# and compares the hashes of all runs. Exit 1 if any differ. Blending, stencil and stream output are in a hash that the test
+# Determinism.R1SamplesBlendingAndStreamOutputHaveOneHash compares in every preset.
 set -euo pipefail
 source "$(dirname "$0")/setup.sh"
 install_packages
@@ -58,6 +59,8 @@ for compiler in g++ clang++; do
                         check "draw $model $contraction" "$("$folder/tessemu" draw "$model" --size 200x150 \
                             --contraction $contraction $options 2>/dev/null | hash_of)" "$what"
                     done
+                    check "draw $model 4 samples, wire" "$("$folder/tessemu" draw "$model" --size 200x150 \
+                        --samples 4 --view wire $options 2>/dev/null | hash_of)" "$what"
                     check "export $model" "$("$folder/tessemu" export "$model" -o "$folder/mesh.ply" $options \
                         2>/dev/null | hash_of)" "$what"
                 done
