@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <limits>
 
 namespace tessemu {
@@ -106,33 +107,44 @@ struct Row {
 
 class Triangles {
 public:
-    Triangles(std::vector<std::uint32_t>& indices, bool ccw) : out_(indices), ccw_(ccw) {}
+    Triangles(std::uint32_t* indices, bool ccw) : out_(indices), ccw_(ccw) {}
 
     void add(std::uint32_t a, std::uint32_t b, std::uint32_t c)
     {
-        std::uint32_t const t[3] = {a, ccw_ ? c : b, ccw_ ? b : c};
-        out_.insert(out_.end(), t, t + 3);
+        out_[0] = a;
+        out_[1] = ccw_ ? c : b;
+        out_[2] = ccw_ ? b : c;
+        out_ += 3;
     }
 
-    // Rings that are both regular: n quads between two rows whose lengths differ by two.
+    // Rings that are both regular: n quads between two rows whose lengths differ by two. Outer
+    // point k + 1 lies at inner point k.
     void regular(Row const& O, Row const& I)
     {
         std::uint32_t const n = I.count;
-        std::uint32_t o = 0, i = 0;
-        auto const advance_outer = [&] {
-            add(O[o], O[o + 1], I[i]);
-            ++o;
-        };
-        advance_outer();
-        for (std::uint32_t k = 0; k < n / 2; ++k, ++o, ++i) {
-            add(O[o], I[i + 1], I[i]);
-            add(O[o], O[o + 1], I[i + 1]);
+        add(O[0], O[1], I[0]);
+        std::uint32_t const half = n / 2, plain = n < 2 ? 0 : n - 2;
+        std::uint32_t k = 0;
+        for (; k < std::min(half, plain); ++k) {
+            std::uint32_t const o = O.first + k + 1, i = I.first + std::uint32_t(I.step) * k,
+                                i1 = i + std::uint32_t(I.step);
+            add(o, i1, i);
+            add(o, o + 1, i1);
         }
-        for (std::uint32_t k = n / 2; k + 1 < n; ++k, ++o, ++i) {
-            add(I[i], O[o], O[o + 1]);
-            add(I[i], O[o + 1], I[i + 1]);
+        for (; k < plain; ++k) {
+            std::uint32_t const o = O.first + k + 1, i = I.first + std::uint32_t(I.step) * k;
+            add(i, o, o + 1);
+            add(i, o + 1, i + std::uint32_t(I.step));
         }
-        advance_outer();
+        for (; k + 1 < n; ++k) // the last inner point may be the ring's first
+            if (k < half) {
+                add(O[k + 1], I[k + 1], I[k]);
+                add(O[k + 1], O[k + 2], I[k + 1]);
+            } else {
+                add(I[k], O[k + 1], O[k + 2]);
+                add(I[k], O[k + 2], I[k + 1]);
+            }
+        add(O[n], O[n + 1], I[n - 1]);
     }
 
     // The frame between an edge, with its own factor, and the first inner ring (rule R71).
@@ -170,16 +182,28 @@ public:
         if (ho > 0) advance_outer();
     }
 
+    std::uint32_t const* end() const { return out_; }
+
 private:
-    std::vector<std::uint32_t>& out_;
+    std::uint32_t* out_;
     bool ccw_;
 };
 
-void add_point(TessellatedPatch& out, std::uint32_t u, std::uint32_t v)
-{
-    out.u.push_back(u);
-    out.v.push_back(v);
-}
+// Where the next point goes.
+class Points {
+public:
+    explicit Points(TessellatedPatch& out) : u_(out.u.data()), v_(out.v.data()), first_(u_) {}
+    void add(std::uint32_t u, std::uint32_t v)
+    {
+        *u_++ = u;
+        *v_++ = v;
+    }
+    std::uint32_t count() const { return std::uint32_t(u_ - first_); }
+
+private:
+    std::uint32_t *u_, *v_;
+    std::uint32_t const* first_;
+};
 
 bool wants_triangles(TessellatorState const& s)
 {
@@ -196,16 +220,26 @@ Row ring_side(std::uint32_t start, std::array<std::uint32_t, 4> const& counts, i
     return {first, count, k + 1 == sides ? start : first + count - 1};
 }
 
+// Sizes the patch; memory that is there already is not touched again.
+void set_size(TessellatedPatch& out, std::uint32_t points, std::uint32_t triangles)
+{
+    out.u.resize(points);
+    out.v.resize(points);
+    out.indices.resize(3 * std::size_t(triangles));
+}
+
 void tessellate_quad(TessellatorState const& state, FixedFactors const& f, TessellatedPatch& out)
 {
-    bool const ccw = state.output == OutputPrimitive::TriangleCcw;
-    Triangles triangles(out.indices, ccw);
     bool const minimal =
         state.partitioning != Partitioning::FractionalEven &&
         std::all_of(f.value.begin(), f.value.end(), [](std::uint32_t x) { return x == kOne; });
+    bool const ccw = state.output == OutputPrimitive::TriangleCcw,
+               triangulated = wants_triangles(state);
     if (minimal) {
-        add_point(out, 0, 0), add_point(out, kOne, 0), add_point(out, kOne, kOne);
-        add_point(out, 0, kOne);
+        set_size(out, 4, triangulated ? 2 : 0);
+        Points points(out);
+        Triangles triangles(out.indices.data(), ccw);
+        points.add(0, 0), points.add(kOne, 0), points.add(kOne, kOne), points.add(0, kOne);
         if (wants_triangles(state)) triangles.add(0, 1, 3), triangles.add(1, 2, 3);
         return;
     }
@@ -216,32 +250,42 @@ void tessellate_quad(TessellatorState const& state, FixedFactors const& f, Tesse
     Positions const Pu(f.value[4], f.odd[4]), Pv(f.value[5], f.odd[5]);
     std::uint32_t const Nu = Pu.span.points, Nv = Pv.span.points;
 
+    // Exact sizes (rule R73), m and n inside segments.
+    std::uint32_t const m = Nu - 1, n = Nv - 1;
+    std::uint32_t sum = 0;
+    for (Positions const& e : edge) sum += e.span.points - 1;
+    set_size(out, sum + (m - 1) * (n - 1),
+             triangulated ? sum + 2 * (m - 2) * (n - 2) + 2 * (m - 2) + 2 * (n - 2) : 0);
+    Points points(out);
+    Triangles triangles(out.indices.data(), ccw);
+
     // Ring 0: the patch edges, walked (0,1) (0,0) (1,0) (1,1).
-    for (std::uint32_t j = edge[0].span.points - 1; j >= 1; --j) add_point(out, 0, edge[0][j]);
-    for (std::uint32_t j = 0; j + 1 < edge[1].span.points; ++j) add_point(out, edge[1][j], 0);
-    for (std::uint32_t j = 0; j + 1 < edge[2].span.points; ++j) add_point(out, kOne, edge[2][j]);
-    for (std::uint32_t j = edge[3].span.points - 1; j >= 1; --j) add_point(out, edge[3][j], kOne);
+    for (std::uint32_t j = edge[0].span.points - 1; j >= 1; --j) points.add(0, edge[0][j]);
+    for (std::uint32_t j = 0; j + 1 < edge[1].span.points; ++j) points.add(edge[1][j], 0);
+    for (std::uint32_t j = 0; j + 1 < edge[2].span.points; ++j) points.add(kOne, edge[2][j]);
+    for (std::uint32_t j = edge[3].span.points - 1; j >= 1; --j) points.add(edge[3][j], kOne);
 
     std::uint32_t const M = std::min(Nu, Nv) >> 1;
     std::array<std::uint32_t, 34> ring_start{};
     for (std::uint32_t k = 1; k < M; ++k) {
-        ring_start[k] = std::uint32_t(out.points());
+        ring_start[k] = points.count();
         std::uint32_t const eu = Nu - 1 - k, ev = Nv - 1 - k;
-        for (std::uint32_t j = ev; j > k; --j) add_point(out, Pu[k], Pv[j]);
-        for (std::uint32_t j = k; j < eu; ++j) add_point(out, Pu[j], Pv[k]);
-        for (std::uint32_t j = k; j < ev; ++j) add_point(out, Pu[eu], Pv[j]);
-        for (std::uint32_t j = eu; j > k; --j) add_point(out, Pu[j], Pv[ev]);
+        for (std::uint32_t j = ev; j > k; --j) points.add(Pu[k], Pv[j]);
+        for (std::uint32_t j = k; j < eu; ++j) points.add(Pu[j], Pv[k]);
+        for (std::uint32_t j = k; j < ev; ++j) points.add(Pu[eu], Pv[j]);
+        for (std::uint32_t j = eu; j > k; --j) points.add(Pu[j], Pv[ev]);
     }
 
     // The leftover row or column in the middle of an even span.
     bool const row = Nu > Nv && !f.odd[5];
     bool const column = !row && Nv >= Nu && !f.odd[4];
-    auto const leftover = std::uint32_t(out.points());
+    std::uint32_t const leftover = points.count();
     if (row)
-        for (std::uint32_t j = M; j <= Nu - 1 - M; ++j) add_point(out, Pu[j], kHalf);
+        for (std::uint32_t j = M; j <= Nu - 1 - M; ++j) points.add(Pu[j], kHalf);
     if (column)
-        for (std::uint32_t j = Nv - M; j-- > M;) add_point(out, kHalf, Pv[j]);
-    if (!wants_triangles(state)) return;
+        for (std::uint32_t j = Nv - M; j-- > M;) points.add(kHalf, Pv[j]);
+    assert(points.count() == out.points());
+    if (!triangulated) return;
 
     std::array<std::uint32_t, 4> outer_counts;
     for (std::size_t e = 0; e < 4; ++e) outer_counts[e] = edge[e].span.points;
@@ -256,18 +300,19 @@ void tessellate_quad(TessellatorState const& state, FixedFactors const& f, Tesse
             if (!last) {
                 I = ring_side(ring_start[k], counts, 4, side);
             } else {
-                std::uint32_t const n = row ? counts[1] : counts[0], end = leftover + n - 1;
+                std::uint32_t const length = row ? counts[1] : counts[0],
+                                    end = leftover + length - 1;
                 int const along =
                     row ? (side + 3) % 4 : side; // 0: as emitted, 1: end, 2: back, 3: start
                 switch (along) {
                 case 0:
-                    I = {leftover, n, end};
+                    I = {leftover, length, end};
                     break;
                 case 1:
                     I = {end, 1, end};
                     break;
                 case 2:
-                    I = {end, n, leftover, -1};
+                    I = {end, length, leftover, -1};
                     break;
                 default:
                     I = {leftover, 1, leftover};
@@ -311,16 +356,21 @@ void tessellate_quad(TessellatorState const& state, FixedFactors const& f, Tesse
             }
         }
     }
+    assert(triangles.end() == out.indices.data() + out.indices.size());
 }
 
 void tessellate_tri(TessellatorState const& state, FixedFactors const& f, TessellatedPatch& out)
 {
-    Triangles triangles(out.indices, state.output == OutputPrimitive::TriangleCcw);
+    bool const ccw = state.output == OutputPrimitive::TriangleCcw,
+               triangulated = wants_triangles(state);
     bool const minimal = state.partitioning != Partitioning::FractionalEven &&
                          std::all_of(f.value.begin(), f.value.begin() + 4,
                                      [](std::uint32_t x) { return x == kOne; });
     if (minimal) {
-        add_point(out, 0, kOne), add_point(out, 0, 0), add_point(out, kOne, 0);
+        set_size(out, 3, triangulated ? 1 : 0);
+        Points points(out);
+        Triangles triangles(out.indices.data(), ccw);
+        points.add(0, kOne), points.add(0, 0), points.add(kOne, 0);
         if (wants_triangles(state)) triangles.add(0, 1, 2);
         return;
     }
@@ -331,30 +381,44 @@ void tessellate_tri(TessellatorState const& state, FixedFactors const& f, Tessel
     Positions const P(f.value[3], f.odd[3]);
     std::uint32_t const N = P.span.points;
 
-    for (std::uint32_t j = edge[0].span.points - 1; j >= 1; --j) add_point(out, 0, edge[0][j]);
-    for (std::uint32_t j = 0; j + 1 < edge[1].span.points; ++j) add_point(out, edge[1][j], 0);
+    // Exact sizes (rule R73).
+    std::uint32_t point_count = 0;
+    for (Positions const& e : edge) point_count += e.span.points - 1;
+    std::uint32_t triangle_count = point_count;
+    for (std::uint32_t r = 1; 2 * r < N; ++r) {
+        std::uint32_t const q = N - 1 - 2 * r;
+        triangle_count += q == 1 ? 4 : 6 * q;
+        point_count += q == 0 ? 1 : 3 * q;
+    }
+    set_size(out, point_count, triangulated ? triangle_count : 0);
+    Points points(out);
+    Triangles triangles(out.indices.data(), ccw);
+
+    for (std::uint32_t j = edge[0].span.points - 1; j >= 1; --j) points.add(0, edge[0][j]);
+    for (std::uint32_t j = 0; j + 1 < edge[1].span.points; ++j) points.add(edge[1][j], 0);
     for (std::uint32_t j = edge[2].span.points - 1; j >= 1; --j)
-        add_point(out, edge[2][j], kOne - edge[2][j]);
+        points.add(edge[2][j], kOne - edge[2][j]);
 
     std::array<std::uint32_t, 34> ring_start{};
     std::uint32_t const rings = N >> 1;
     for (std::uint32_t k = 1; k < rings; ++k) {
-        ring_start[k] = std::uint32_t(out.points());
+        ring_start[k] = points.count();
         std::uint32_t const e = N - 1 - k;
         std::uint32_t const c = (P[k] * 0xaaaau + 0x8000u) >> 16; // two thirds of P(k)
         std::uint32_t const d = (c + 1) / 2;
-        for (std::uint32_t j = e; j > k; --j) add_point(out, c, P[j] - d);
-        for (std::uint32_t j = k; j < e; ++j) add_point(out, P[j] - d, c);
+        for (std::uint32_t j = e; j > k; --j) points.add(c, P[j] - d);
+        for (std::uint32_t j = k; j < e; ++j) points.add(P[j] - d, c);
         for (std::uint32_t j = e; j > k; --j) {
             std::uint32_t const u = P[j] - d;
-            add_point(out, u, kOne - u - c);
+            points.add(u, kOne - u - c);
         }
     }
     if (!f.odd[3]) {
-        ring_start[rings] = std::uint32_t(out.points());
-        add_point(out, 0x5555, 0x5555);
+        ring_start[rings] = points.count();
+        points.add(0x5555, 0x5555);
     }
-    if (!wants_triangles(state)) return;
+    assert(points.count() == out.points());
+    if (!triangulated) return;
 
     std::array<std::uint32_t, 4> outer_counts{edge[0].span.points, edge[1].span.points,
                                               edge[2].span.points, 0};
@@ -375,15 +439,18 @@ void tessellate_tri(TessellatorState const& state, FixedFactors const& f, Tessel
         outer_start = ring_start[k];
     }
     if (f.odd[3]) triangles.add(outer_start, outer_start + 1, outer_start + 2);
+    assert(triangles.end() == out.indices.data() + out.indices.size());
 }
 
 void tessellate_isoline(TessellatorState const& state, FixedFactors const& f, TessellatedPatch& out)
 {
     Positions const lines(f.value[0], f.odd[0]), detail(f.value[1], f.odd[1]);
     std::uint32_t const density = f.value[0] >> 16;
+    set_size(out, density * detail.span.points, 0);
+    Points points(out);
     for (std::uint32_t l = 0; l < density; ++l) {
-        auto const start = std::uint32_t(out.points());
-        for (std::uint32_t j = 0; j < detail.span.points; ++j) add_point(out, detail[j], lines[l]);
+        std::uint32_t const start = points.count();
+        for (std::uint32_t j = 0; j < detail.span.points; ++j) points.add(detail[j], lines[l]);
         if (state.output == OutputPrimitive::Point) continue;
         for (std::uint32_t j = 0; j + 1 < detail.span.points; ++j) {
             out.indices.push_back(start + j);
@@ -396,8 +463,7 @@ void tessellate_isoline(TessellatorState const& state, FixedFactors const& f, Te
 
 void tessellate(TessellatorState const& state, FixedFactors const& factors, TessellatedPatch& out)
 {
-    out.u.clear(), out.v.clear(), out.indices.clear();
-    if (factors.culled) return;
+    if (factors.culled) return set_size(out, 0, 0);
     switch (state.domain) {
     case TessellatorDomain::Quad:
         tessellate_quad(state, factors, out);
