@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "emu/fragment_bins.h"
+
+#include <algorithm>
+
+namespace tessemu {
+
+void FragmentBins::reset(std::size_t tiles, bool wide_color)
+{
+    if (head_.size() != tiles) {
+        head_.assign(tiles, kNone);
+        tail_.assign(tiles, kNone);
+    }
+    for (std::uint32_t t : touched_) head_[t] = tail_[t] = kNone;
+    touched_.clear();
+    used_ = 0;
+    wide_color_ = wide_color;
+}
+
+FragmentBins::Block& FragmentBins::fresh_block(std::size_t tile)
+{
+    auto const fresh = std::uint32_t(used_++);
+    if (fresh == blocks_.size()) {
+        blocks_.emplace_back();
+        if (wide_color_) rest_.resize(blocks_.size() * 3 * kRow);
+    }
+    blocks_[fresh].count = 0;
+    blocks_[fresh].next = kNone;
+    if (tail_[tile] == kNone) {
+        head_[tile] = fresh;
+        touched_.push_back(std::uint32_t(tile));
+    } else {
+        blocks_[tail_[tile]].next = fresh;
+    }
+    tail_[tile] = fresh;
+    return blocks_[fresh];
+}
+
+std::uint64_t merge_fragments(RasterTarget const& target, FragmentBins const& bins,
+                              std::size_t tile)
+{
+    std::uint32_t* const codes = target.depth->codes();
+    auto* const pixels = reinterpret_cast<std::uint32_t*>(target.color[0]->texel(0, 0));
+    bool const or_equal = target.depth_stencil.depth_func == Comparison::LessEqual;
+    std::uint32_t const slack = or_equal ? 1 : 0; // a <= b is a < b + 1 in integers
+    std::uint64_t passed = 0;
+    // Selects, not branches: whether a fragment passes is hard to predict.
+    auto const merge = [&](FragmentBins::Block const& b, std::uint32_t const* rest,
+                           std::uint32_t i) {
+        std::size_t const at = b.texel[i];
+        std::uint32_t const stored = codes[at], z = b.depth[i];
+        bool const pass = z < stored + slack;
+        passed += pass;
+        codes[at] = pass ? z : stored;
+        if (!rest) {
+            std::uint32_t const old = pixels[at], fresh = b.color[i];
+            pixels[at] = pass ? fresh : old;
+            return;
+        }
+        std::uint32_t* const p = pixels + 4 * at;
+        p[0] = pass ? b.color[i] : p[0];
+        for (std::size_t k = 0; k < 3; ++k)
+            p[k + 1] = pass ? rest[k * FragmentBins::kRow + i] : p[k + 1];
+    };
+    constexpr std::uint32_t kAhead = 32, kStep = 4; // a step is a row of a 4x4 block at most
+    bins.for_each_block(tile, [&](FragmentBins::Block const& b, std::uint32_t const* rest) {
+        std::uint32_t const count = b.count;
+        std::uint32_t i = 0;
+        for (; i + kStep <= count; i += kStep) {
+            std::size_t const next = b.texel[std::min(i + kAhead, count - 1)];
+            __builtin_prefetch(codes + next, 1);
+            __builtin_prefetch(pixels + (rest ? 4 * next : next), 1);
+            for (std::uint32_t k = 0; k < kStep; ++k) merge(b, rest, i + k);
+        }
+        for (; i < count; ++i) merge(b, rest, i);
+    });
+    return passed;
+}
+
+} // namespace tessemu
