@@ -108,7 +108,7 @@ Streamed stream_strips(std::vector<std::array<float, 2>> const& points, std::siz
     Streamed r;
     r.statistics = s.draw();
     r.values.resize(buffer.filled / 4);
-    std::memcpy(r.values.data(), memory.data(), buffer.filled);
+    if (buffer.filled) std::memcpy(r.values.data(), memory.data(), buffer.filled);
     return r;
 }
 
