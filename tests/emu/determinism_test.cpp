@@ -100,9 +100,10 @@ std::uint64_t picture(int threads, int lanes)
                                 Blend::One, Blend::InvDestAlpha, BlendOp::Max,       0xf};
     s.target.rasterizer.slope_scaled_depth_bias = 0.5f;
     for (int i = 0; i < 3 * 400; ++i) {
-        float const w = 1 + 0.6f * random();
-        s.add((0.5f + 0.7f * random()) * kWidth, (0.5f + 0.7f * random()) * kHeight,
-              0.5f + 0.6f * random(), w, {random() * 3, random() * 3, random(), random()});
+        float r[8]; // one by one: arguments are evaluated in any order
+        for (float& x : r) x = random();
+        s.add((0.5f + 0.7f * r[0]) * kWidth, (0.5f + 0.7f * r[1]) * kHeight, 0.5f + 0.6f * r[2],
+              1 + 0.6f * r[3], {r[4] * 3, r[5] * 3, r[6], r[7]});
     }
     Hash hash;
     auto const add_all = [&] {
@@ -130,7 +131,7 @@ TEST(Determinism, R1SamplesBlendingAndStreamOutputHaveOneHash)
 {
     // Stored: made by version 0.1.0 with g++ 12; a change of behaviour changes it, nothing else
     // may.
-    constexpr std::uint64_t kStored = 3581124141264054834u;
+    constexpr std::uint64_t kStored = 3521451868432829853u;
     for (int threads : {1, 2, 5})
         for (int lanes : {4, 8, 16})
             EXPECT_EQ(picture(threads, lanes), kStored) << threads << " threads " << lanes;
