@@ -7,12 +7,14 @@ namespace tessemu {
 
 void FragmentBins::reset(std::size_t tiles, bool wide_color)
 {
-    if (head_.size() != tiles) {
+    if (head_.size() == tiles) {
+        for (std::uint32_t t : touched_) head_[t] = tail_[t] = kNone;
+    } else { // another target's draw used this memory before
         head_.assign(tiles, kNone);
         tail_.assign(tiles, kNone);
     }
-    for (std::uint32_t t : touched_) head_[t] = tail_[t] = kNone;
     touched_.clear();
+    if (wide_color) rest_.resize(blocks_.size() * 3 * kRow);
     used_ = 0;
     wide_color_ = wide_color;
 }
@@ -44,7 +46,6 @@ std::uint64_t merge_fragments(RasterTarget const& target, FragmentBins const& bi
     bool const or_equal = target.depth_stencil.depth_func == Comparison::LessEqual;
     std::uint32_t const slack = or_equal ? 1 : 0; // a <= b is a < b + 1 in integers
     std::uint64_t passed = 0;
-    // Selects, not branches: whether a fragment passes is hard to predict.
     auto const merge = [&](FragmentBins::Block const& b, std::uint32_t const* rest,
                            std::uint32_t i) {
         std::size_t const at = b.texel[i];

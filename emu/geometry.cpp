@@ -52,6 +52,8 @@ void GeometryStages::start(GeometryChunk& c, std::size_t first, std::size_t coun
     c.count = count;
     c.counters = GeometryCounters{};
     c.primitives.clear();
+    c.gs_primitive_id.clear(); // another draw's geometry shader may have left some
+    c.gs_viewport.clear();
 }
 
 void GeometryStages::run(GeometryChunk& c, AssembledPrimitives const& primitives,

@@ -4,8 +4,6 @@
 #include "emu/lane_memory.h"
 
 #include <bit>
-#include <cassert>
-#include <cstring>
 
 namespace tessemu {
 

@@ -59,7 +59,6 @@ private:
         kB2,
         kC2,
         kFront,
-        kId,
         kInverse,
         kZ,
         kDz1,

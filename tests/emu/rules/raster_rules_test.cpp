@@ -207,6 +207,23 @@ TEST(Viewport, R98TheImplicitScissorFloorsSumsAndTheScissorIsHalfOpen)
     EXPECT_EQ(cut.covered(), 2 * 5);
 }
 
+// One memory serves draws into targets of other sizes, formats and pipelines.
+TEST(DrawMemory, ServesAnyDrawAfterAnyOther)
+{
+    DrawMemory memory;
+    for (int round = 0; round < 2; ++round)
+        for (auto [size, format] : {std::pair{1000, Format::R8G8B8A8_UNORM},
+                                    {64, Format::R32G32B32A32_FLOAT},
+                                    {300, Format::R8G8B8A8_UNORM},
+                                    {1000, Format::R32G32B32A32_FLOAT}}) {
+            Scene s(size, size, 1, format);
+            s.options.memory = &memory;
+            s.add_full();
+            EXPECT_EQ(s.draw().samples_passed, std::uint64_t(size) * std::uint64_t(size));
+            EXPECT_EQ(s.covered(), size * size);
+        }
+}
+
 TEST(Rasterizer, R100R112PixelCentresLieAtOneHalfAndTargetsReach16384)
 {
     Scene s;
