@@ -1,9 +1,8 @@
 // Counted<T>: a scalar whose operators count, and the thread's execution state that the counts go
 // to.
 //
-// One operation of a group counts once in `pending`; when the set of active lanes changes, pending
-// is multiplied by the number of active lanes and moved to `total`. So a count never depends on how
-// invocations were grouped into lanes, and straight-line code costs a few additions per group.
+// An operation of a group counts once for each active lane, so a count never depends on how
+// invocations were grouped into lanes; straight-line code costs a few additions per group.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -11,6 +10,7 @@
 #include "emu/lanes.h"
 
 #include <array>
+#include <utility>
 
 namespace tessemu {
 
@@ -51,8 +51,7 @@ enum ShaderFeature : std::uint32_t {
 
 /// The state of the group of invocations that the thread is running.
 struct Execution {
-    FlopCount pending{};            ///< counted per group, since the active lanes last changed
-    FlopCount total{};              ///< counted per invocation
+    FlopCount flops{};              ///< counted per invocation
     std::uint32_t active_bits = 1;  ///< bit i: lane i runs
     std::uint32_t active_lanes = 1; ///< popcount of active_bits
     FetchSlot* buffers = nullptr;   ///< the stage's buffer slots, by slot number
@@ -60,18 +59,10 @@ struct Execution {
 
     void activate(std::uint32_t bits)
     {
-        if (bits == active_bits) return;
-        total += pending * active_lanes;
-        pending = {};
         active_bits = bits;
         active_lanes = std::uint32_t(std::popcount(bits));
     }
-    FlopCount take()
-    {
-        FlopCount const c = total + pending * active_lanes;
-        total = pending = {};
-        return c;
-    }
+    FlopCount take() { return std::exchange(flops, {}); }
 };
 constinit inline thread_local Execution execution{};
 
@@ -85,75 +76,75 @@ template <class T> struct Counted {
 
     friend Counted operator+(Counted a, Counted b)
     {
-        ++execution.pending.add;
+        execution.flops.add += execution.active_lanes;
         return T(a.value + b.value);
     }
     friend Counted operator-(Counted a, Counted b)
     {
-        ++execution.pending.add;
+        execution.flops.add += execution.active_lanes;
         return T(a.value - b.value);
     }
     friend Counted operator*(Counted a, Counted b)
     {
-        ++execution.pending.mul;
+        execution.flops.mul += execution.active_lanes;
         return T(a.value * b.value);
     }
     friend Counted operator/(Counted a, Counted b)
     {
-        ++execution.pending.div;
+        execution.flops.div += execution.active_lanes;
         return T(a.value / b.value);
     }
     friend Counted operator-(Counted a) { return T(-a.value); }
     friend Counted mad(Counted a, Counted b, Counted c)
     {
-        ++execution.pending.mad;
+        execution.flops.mad += execution.active_lanes;
         return T(mad(a.value, b.value, c.value));
     }
     friend Counted sqrt(Counted a)
     {
-        ++execution.pending.sqrt;
+        execution.flops.sqrt += execution.active_lanes;
         return T(sqrt(a.value));
     }
     friend Counted floor(Counted a) { return T(floor(a.value)); }
     friend Counted abs(Counted a) { return T(abs(a.value)); }
     friend Counted min(Counted a, Counted b)
     {
-        ++execution.pending.compare;
+        execution.flops.compare += execution.active_lanes;
         return T(min(a.value, b.value));
     }
     friend Counted max(Counted a, Counted b)
     {
-        ++execution.pending.compare;
+        execution.flops.compare += execution.active_lanes;
         return T(max(a.value, b.value));
     }
     friend mask_of<T> operator<(Counted a, Counted b)
     {
-        ++execution.pending.compare;
+        execution.flops.compare += execution.active_lanes;
         return a.value < b.value;
     }
     friend mask_of<T> operator>(Counted a, Counted b)
     {
-        ++execution.pending.compare;
+        execution.flops.compare += execution.active_lanes;
         return a.value > b.value;
     }
     friend mask_of<T> operator<=(Counted a, Counted b)
     {
-        ++execution.pending.compare;
+        execution.flops.compare += execution.active_lanes;
         return a.value <= b.value;
     }
     friend mask_of<T> operator>=(Counted a, Counted b)
     {
-        ++execution.pending.compare;
+        execution.flops.compare += execution.active_lanes;
         return a.value >= b.value;
     }
     friend mask_of<T> operator==(Counted a, Counted b)
     {
-        ++execution.pending.compare;
+        execution.flops.compare += execution.active_lanes;
         return a.value == b.value;
     }
     friend mask_of<T> operator!=(Counted a, Counted b)
     {
-        ++execution.pending.compare;
+        execution.flops.compare += execution.active_lanes;
         return a.value != b.value;
     }
     friend Counted select(mask_of<T> m, Counted a, Counted b)

@@ -322,6 +322,7 @@ void check_draw(GraphicsPipelineDesc const& d, DrawCall const& call, RasterTarge
     };
     limit("render targets", target->color.size(), kMaxRenderTargets);
     limit("viewports", target->viewports.size(), kMaxViewports);
+    limit("scissor rectangles", target->scissors.size(), kMaxViewports);
     for (Viewport const& v : target->viewports) {
         bool const depth = 0 <= v.min_depth && v.min_depth <= v.max_depth && v.max_depth <= 1;
         auto const inside = [](float p) { return p >= -32768 && p <= 32767; };

@@ -282,9 +282,13 @@ std::array<float, 4> decode(Format format, std::byte const* e)
     return r;
 }
 
-void encode(Format format, std::array<float, 4> const& v, std::byte* e)
+void encode(Format format, std::array<float, 4> const& value, std::byte* e)
 {
     FormatInfo const& f = info(format);
+    std::array<float, 4> v = value;
+    if (f.type == FormatType::Float)
+        for (float& c : v)
+            if (c != c) c = std::bit_cast<float>(kCanonicalNan);
     int const n = f.components, width = f.bytes / n;
     if (format == Format::R11G11B10_FLOAT) {
         write(e, 0,

@@ -52,12 +52,17 @@ struct FormatInfo {
 };
 FormatInfo const& info(Format format);
 
+/// The NaN that float targets hold: which one arithmetic makes depends on the processor and on how
+/// a compiler orders operands.
+inline constexpr std::uint32_t kCanonicalNan = 0x7fc00000;
+
 /// One element as four shader registers: missing components are 0, a missing fourth is 1 (R36).
 /// Integer formats give their bits, as in a shader register. 32-bit components pass untouched.
 std::array<float, 4> decode(Format format, std::byte const* element);
 
 /// Four registers as one element. Float formats round toward zero to fewer bits (R20), normalised
-/// ones round to nearest (R21), integer ones clamp to their range (R26).
+/// ones round to nearest (R21), integer ones clamp to their range (R26). A float format has one NaN
+/// (I-4).
 void encode(Format format, std::array<float, 4> const& value, std::byte* element);
 
 /// The range that blending clamps to, [0,1] or [-1,1]; float formats have none (R136).

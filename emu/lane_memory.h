@@ -54,8 +54,8 @@ template <int N> IntLanes<N> permute(IntLanes<N> v, IntLanes<N> index)
 {
 #if defined(__AVX512F__)
     if constexpr (N == 16)
-        return typename IntLanes<N>::Raw(
-            _mm512_maskz_permutexvar_epi32(__mmask16(-1), __m512i(index.raw), __m512i(v.raw)));
+        return typename IntLanes<N>::Raw(_mm512_mask_permutexvar_epi32(
+            __m512i(v.raw), __mmask16(-1), __m512i(index.raw), __m512i(v.raw)));
 #endif
 #if defined(__AVX2__)
     if constexpr (N == 8)

@@ -148,14 +148,27 @@ template <int N> struct Lanes {
         return r;
     }
     friend Lanes abs(Lanes a) { return Raw(Bits(a.raw) & 0x7fffffff); }
+    // One instruction orders as HLSL does, -0 below +0 too, once signalling NaNs are quiet.
     friend Lanes min(Lanes a, Lanes b)
     {
+#if defined(__AVX512DQ__)
+        if constexpr (N == 16) {
+            Lanes const zero(detail::minus_zero);
+            return Raw(_mm512_range_ps(__m512((b + zero).raw), __m512((a + zero).raw), 4));
+        }
+#endif
         Lanes const equal = Raw(Bits(a.raw) | Bits(b.raw));
         return select(a < b, a, select(b < a, b, select(a == b, equal, select(a == a, a, b)))) +
                Lanes(detail::minus_zero);
     }
     friend Lanes max(Lanes a, Lanes b)
     {
+#if defined(__AVX512DQ__)
+        if constexpr (N == 16) {
+            Lanes const zero(detail::minus_zero);
+            return Raw(_mm512_range_ps(__m512((b + zero).raw), __m512((a + zero).raw), 5));
+        }
+#endif
         Lanes const equal = Raw(Bits(a.raw) & Bits(b.raw));
         return select(a > b, a, select(b > a, b, select(a == b, equal, select(a == a, a, b)))) +
                Lanes(detail::minus_zero);

@@ -116,8 +116,12 @@ public:
     }
     std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
 
-    void run(FragmentBatch const& b, StageCounters& counters,
-             StageBuffers const& buffers) const override
+    // Flattened for the reason of DomainProgramOn::run.
+#if !defined(__SANITIZE_ADDRESS__)
+    [[gnu::flatten]]
+#endif
+    void
+    run(FragmentBatch const& b, StageCounters& counters, StageBuffers const& buffers) const override
     {
         StageScope const scope(counters, buffers, seed_);
         for (std::size_t first = 0; first < b.count; first += N) {

@@ -581,7 +581,10 @@ void TriangleStream::shade()
         I const tiles = (y >> shift) * I(tiles_x_) + (x >> shift);
         I color[4];
         if (wide_color_) {
-            for (int k = 0; k < 4; ++k) color[k] = I(I::Raw(F::load(color_[k] + q).raw));
+            for (int k = 0; k < 4; ++k) {
+                F const c = F::load(color_[k] + q);
+                color[k] = select(c == c, I(I::Raw(c.raw)), I(kCanonicalNan));
+            }
         } else {
             // R21 in double, which is exact.
             typedef double D __attribute__((vector_size(8 * N)));
@@ -595,13 +598,13 @@ void TriangleStream::shade()
             }
         }
         std::uint32_t rest = n == N ? Mask<N>(true).bits() : (1u << n) - 1;
+        if (((tiles == I(tiles.raw[0])).bits() & rest) == rest) {
+            bins_->append(std::size_t(tiles.raw[0]), n, texel, depth, color);
+            continue;
+        }
         while (rest) {
             std::int32_t const t = tiles.raw[std::countr_zero(rest)];
             std::uint32_t const here = (tiles == I(t)).bits() & rest;
-            if (here == rest && std::popcount(here) == n) {
-                bins_->append(std::size_t(t), n, texel, depth, color);
-                break;
-            }
             I some[4];
             for (int k = 0; k < (wide_color_ ? 4 : 1); ++k) some[k] = compress(color[k], here);
             bins_->append(std::size_t(t), std::popcount(here), compress(texel, here),

@@ -40,7 +40,7 @@ template <class T> struct CubicBasis {
 template <class T, class Net> constexpr TangentFrame<T> bicubic(Net const& net, T u, T v)
 {
     CubicBasis<T> const U(u), V(v);
-    TangentFrame<T> s{};
+    TangentFrame<T> s;
     unrolled<4>([&](auto i) {
         float3<T> const b0 = net(i, 0), b1 = net(i, 1), b2 = net(i, 2), b3 = net(i, 3);
         components([&](auto of) {
@@ -78,7 +78,7 @@ constexpr TangentFrame<T> quartic_triangle(float3<T> const (&b)[5][5], T u, T v,
                 [&](auto k) { q[r][k] = u * q[r][k] + v * q[r + 1][k] + w * q[r + 1][k + 1]; });
         });
     });
-    TangentFrame<T> s{};
+    TangentFrame<T> s;
     s.position = u * q[0][0] + v * q[1][0] + w * q[1][1];
     s.du = q[0][0] - q[1][1];
     s.dv = q[1][0] - q[1][1];

@@ -82,9 +82,10 @@ struct Slots {
         call.layout = {{Format::R32G32B32_FLOAT, 4, 0, 0, false, 1},
                        {Format::R32_UINT, 1, 1, 0, true, 1}};
     }
-    std::array<float, 5> fetch(std::uint32_t vertex, std::uint32_t instance) const
+    /// As many registers as both elements have at most.
+    std::array<float, 8> fetch(std::uint32_t vertex, std::uint32_t instance) const
     {
-        std::array<float, 5> out;
+        std::array<float, 8> out{};
         fetch_vertex(call, vertex, instance, out.data());
         return out;
     }
@@ -137,9 +138,7 @@ TEST(InputAssembler, R35R36OutOfBoundsIsZeroAndMissingComponentsDefault)
     s.call.vertex_buffers[0].bytes = {}; // nothing bound: no defaults
     EXPECT_EQ(s.fetch(0, 0)[3], 0.0f);
     s.call.layout[1] = {Format::R32_UINT, 4, 1, 0, false, 1};
-    std::array<float, 8> out;
-    fetch_vertex(s.call, 0, 0, out.data());
-    EXPECT_EQ(word(out[7]), 1u); // integer 1
+    EXPECT_EQ(word(s.fetch(0, 0)[7]), 1u); // integer 1
     // 32-bit components pass untouched: a signalling NaN and a denormal.
     s.positions[0] = std::bit_cast<float>(0x7f800001u);
     s.positions[1] = std::bit_cast<float>(1u);

@@ -55,6 +55,24 @@ TEST(GeometryShader, R7R85R99LeadingVertexGivesPrimitiveIdAndViewport)
     EXPECT_EQ(n.pipeline.GSPrimitives, 5u);
 }
 
+// Viewports that a geometry shader chose do not linger in the memory of the next draw.
+TEST(GeometryShader, R99WithoutOneAllGoesToViewportZero)
+{
+    DrawMemory memory;
+    Scene s(32, 32);
+    s.options.memory = &memory;
+    s.target.viewports = {{0, 0, 16, 16, 0, 1}, {16, 0, 16, 16, 0, 1}};
+    for (int i = 0; i < 2; ++i) s.add_full(0.5f);
+    s.desc.geometry_shader = make_geometry_program(PassTriangle{}, {});
+    s.draw();
+    EXPECT_EQ(s.covered(), 2 * 16 * 16);
+    s.clear();
+    s.desc.geometry_shader = nullptr;
+    s.draw();
+    EXPECT_EQ(s.covered(), 16 * 16);
+    EXPECT_EQ(s.at(20, 4), 0.0f);
+}
+
 TEST(GeometryShader, R99AnIndexOutOfRangeActsAsZero)
 {
     Scene s(16, 16);

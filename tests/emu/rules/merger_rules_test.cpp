@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <limits>
 
 namespace tessemu::test {
@@ -44,8 +45,8 @@ TEST(Interpolation, R120ModesAreConstantPerspectiveAndScreenLinear)
     EXPECT_NEAR(p[2], t, 8 * 0x1p-24);
     EXPECT_NEAR(p[1], (t / 4) / ((1 - t - u) + t / 4 + u), 8 * 0x1p-24);
     EXPECT_EQ(p[3], p[1]); // one sample: centroid is the centre
-    // I-15: constant attributes pass bits, a NaN with payload too.
-    Scene bits;
+    // I-15: constant attributes pass bits, a NaN with payload too; an integer target shows them.
+    Scene bits(16, 16, 1, Format::R32G32B32A32_UINT);
     bits.use(ShowModes{});
     float const odd = std::bit_cast<float>(0x7fc12345u);
     bits.add_full(0.5f, {odd, 0, 0, 0});
@@ -217,6 +218,35 @@ TEST(OutputMerger, R126R137UndeclaredTargetsStayAndEightAreAllowed)
     EXPECT_EQ(third.load(2, 2)[0], 1.0f);
     s.target.color.resize(9, nullptr);
     EXPECT_THROW(s.draw(), LimitError);
+}
+
+// 0/0, its negative, infinity less infinity, and what the attribute brings.
+struct MakeNans {
+    template <class T> using Input = SceneValue<T>;
+    template <class T> float4<T> operator()(PixelInput<T> const&, SceneValue<T> const& in) const
+    {
+        T const zero = in.value.x, nan = zero / zero, inf = T(1) / zero;
+        return {nan, T(-nan), T(inf - inf), in.value.w};
+    }
+};
+
+TEST(OutputMerger, I4FloatTargetsHoldOneNan)
+{
+    for (bool general : {false, true})
+        for (Format format : {Format::R32G32B32A32_FLOAT, Format::R16G16B16A16_FLOAT}) {
+            Scene s(8, 8, 1, format);
+            s.use(MakeNans{});
+            s.target.blend.target[0].enable = general; // takes the draw off the streaming path
+            s.add_full(0.5f, {0, 0, 0, std::bit_cast<float>(0x7fa12345u)});
+            s.draw();
+            std::byte const* const texel = s.color.texel(3, 4);
+            for (int k = 0; k < 4; ++k) {
+                std::uint32_t bits = 0;
+                std::size_t const width = format == Format::R32G32B32A32_FLOAT ? 4 : 2;
+                std::memcpy(&bits, texel + std::size_t(k) * width, width);
+                EXPECT_EQ(bits, width == 4 ? 0x7fc00000u : 0x7e00u) << k << general;
+            }
+        }
 }
 
 TEST(OutputMerger, R6WithoutTargetsStatisticsAndOcclusionStillRun)

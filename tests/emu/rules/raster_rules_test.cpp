@@ -181,6 +181,10 @@ TEST(Viewport, R97RefusesWhatLiesOutsideAndTheDefaultIsEmpty)
         s.add_full();
         EXPECT_THROW(s.draw(), Error);
     }
+    Scene many;
+    many.target.scissors.resize(17);
+    many.add_full();
+    EXPECT_THROW(many.draw(), LimitError);
     Scene none;
     none.target.viewports = {};
     none.add_full();
