@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/technique.h"
 
+#include "pipeline/acc_technique.h"
 #include "pipeline/catmull_clark.h"
 #include "pipeline/gregory_stencil_technique.h"
 
@@ -13,6 +14,7 @@ std::vector<std::unique_ptr<Technique>> const& techniques()
     static std::vector<std::unique_ptr<Technique>> const all = [] {
         std::vector<std::unique_ptr<Technique>> t;
         t.push_back(make_gregory_stencil_technique());
+        t.push_back(make_acc_technique());
         return t;
     }();
     return all;

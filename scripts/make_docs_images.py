@@ -16,6 +16,8 @@ def run(*arguments):
 def pictures():
     for name, options in (("jug.png", []), ("jug_patches.png", ["--view", "patches"])):
         run("draw", "jug", "--tess", "24", "--size", "640x640", *options, "-o", str(OUT / name))
+    run("draw", "saddle_star", "--scheme", "acc", "--view", "patches", "--tess", "12", "--size", "640x420",
+        "-o", str(OUT / "saddle_star_acc.png"))
     for view in ("wire", "coverage"):
         run("draw", "jug", "--tess", "5", "--view", view, "--size", "480x480", "--samples", "4",
             "-o", str(OUT / f"jug_{view}.png"))

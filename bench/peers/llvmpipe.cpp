@@ -9,7 +9,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/scene.h"
 #include "io/image_writer.h"
-#include "pipeline/gregory_stencils.h"
+#include "pipeline/patch_stencils.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -137,7 +137,7 @@ std::vector<float> control_points(BenchScene const& scene)
     for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
         if (mesh.face(f).size() != 4) continue;
         find_neighbourhood(*scene.mesh.topology, f, n);
-        GregoryStencils const s = make_gregory_stencils(n, false, {});
+        PatchStencils const s = make_gregory_stencils(n, false, {});
         for (int r = 0; r < kPoints; ++r) {
             glm::dvec3 p(0);
             for (std::size_t i = 0; i < n.inputs.size(); ++i)

@@ -2,7 +2,7 @@
 #include "pipeline/connectivity.h"
 
 #include "io/model.h"
-#include "pipeline/gregory_stencils.h"
+#include "pipeline/patch_stencils.h"
 #include "pipeline/technique.h"
 #include "tests/support/files.h"
 
@@ -37,11 +37,11 @@ TEST(Connectivity, EqualTypesHaveEqualStencilsBitForBit)
     for (char const* name : {"jug", "spindle", "saddle_star"}) {
         ControlMesh const m = load_model(name).mesh;
         Topology const t(m);
-        std::map<std::string, GregoryStencils> first;
+        std::map<std::string, PatchStencils> first;
         Neighbourhood n;
         for (std::uint32_t f = 0; f < m.faces(); ++f) {
             find_neighbourhood(t, f, n);
-            GregoryStencils const s = make_gregory_stencils(n, false, {});
+            PatchStencils const s = make_gregory_stencils(n, false, {});
             auto const [it, fresh] = first.try_emplace(n.key, s);
             EXPECT_EQ(it->second.rows, s.rows) << name << " face " << f;
         }
@@ -70,7 +70,7 @@ TEST(GregoryStencils, SharedControlPointsHaveEqualWeightsInEveryPatch)
         };
         for (std::uint32_t f = 0; f < m.faces(); ++f) {
             find_neighbourhood(t, f, n);
-            GregoryStencils const s = make_gregory_stencils(n, false, {});
+            PatchStencils const s = make_gregory_stencils(n, false, {});
             auto const face = m.face(f);
             int const N = n.sides;
             auto const vertex = [&](int i) { return face[std::size_t((i + n.rotation + N) % N)]; };

@@ -30,9 +30,9 @@ struct Loaded {
     std::unique_ptr<PatchMesh> patches;
 };
 
-Loaded load_patches(std::string const& model)
+Loaded load_patches(std::string const& model, char const* scheme = "gregory-stencil")
 {
-    Technique const& technique = find_technique("gregory-stencil");
+    Technique const& technique = find_technique(scheme);
     Loaded out;
     out.mesh = prepare_mesh(load_model(model).mesh, technique);
     out.patches = technique.build(*out.mesh.topology, {});
@@ -48,9 +48,9 @@ std::vector<Machine> contraction_policies()
     return out;
 }
 
-void expect_closed(std::string const& model)
+void expect_closed(std::string const& model, char const* scheme = "gregory-stencil")
 {
-    Loaded const m = load_patches(model);
+    Loaded const m = load_patches(model, scheme);
     ThreadPool const threads;
     for (Machine const& machine : contraction_policies())
         for (float factor :
@@ -74,6 +74,21 @@ TEST(GregoryStencil, R68V16SharedEdgesOfBuiltInCagesHaveEqualBits)
 {
     for (char const* model : {"jug", "spindle", "saddle_star"}) expect_closed(model);
 }
+
+TEST(Acc, SharedEdgesOfBuiltInCagesHaveEqualBits)
+{
+    expect_closed("saddle_star", "acc");
+}
+
+class AccOn : public testing::TestWithParam<char const*> {};
+
+TEST_P(AccOn, SharedEdgesHaveEqualBitsUnderEveryContraction)
+{
+    std::string const file = std::string("models/") + GetParam() + ".obj";
+    TESSEMU_NEEDS_SHARED(file);
+    expect_closed(test::shared(file).string(), "acc");
+}
+INSTANTIATE_TEST_SUITE_P(Models, AccOn, testing::Values("bigguy", "monsterfrog"));
 
 class GregoryStencilOn : public testing::TestWithParam<char const*> {};
 

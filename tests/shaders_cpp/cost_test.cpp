@@ -6,9 +6,10 @@
 #include "io/obj_reader.h"
 #include "pipeline/builtin_models.h"
 #include "pipeline/frame.h"
-#include "pipeline/gregory_stencils.h"
+#include "pipeline/patch_stencils.h"
+#include "shaders_cpp/acc/acc_quad.h"
 #include "shaders_cpp/gregory/domain_shaders.h"
-#include "shaders_cpp/gregory/stencil_hull_shader.h"
+#include "shaders_cpp/stencil_hull_shader.h"
 
 #include <gtest/gtest.h>
 
@@ -28,8 +29,8 @@ template <class Inside> constexpr Cost evaluation_cost()
 {
     Cost c;
     c.flops = tally([&](FlopCount* sink) {
-        ControlPoints<ControlVertex<Tally>> const patch(sink, Inside::kControlPoints,
-                                                        &c.control_points);
+        ControlPoints<typename Inside::template ControlPoint<Tally>> const patch(
+            sink, Inside::kControlPoints, &c.control_points);
         DomainInput<Tally> const in{Tally(0.25, sink), Tally(0.5, sink), Tally(0.25, sink), 0};
         TangentFrame<Tally> const s = Inside::template evaluate<Tally>(patch, in, false);
         (void)cross(s.du, s.dv);
@@ -42,11 +43,13 @@ template <class Inside> constexpr Cost evaluation_cost()
 static_assert(flops_loop10(evaluation_cost<RegularQuadInside>().flops) == 162);
 static_assert(flops_loop10(evaluation_cost<GregoryQuadInside>().flops) == 198);
 static_assert(flops_loop10(evaluation_cost<GregoryTriangleInside>().flops) == 258);
+static_assert(flops_loop10(evaluation_cost<AccQuadInside>().flops) == 272);
 static_assert(evaluation_cost<GregoryQuadInside>().flops.div == 4);
 static_assert(evaluation_cost<GregoryTriangleInside>().flops.div == 3);
 static_assert(evaluation_cost<RegularQuadInside>().control_points == 16);
 static_assert(evaluation_cost<GregoryQuadInside>().control_points == 20);
 static_assert(evaluation_cost<GregoryTriangleInside>().control_points == 15);
+static_assert(evaluation_cost<AccQuadInside>().control_points == 25);
 
 // The whole domain shader at a point; the value of (u,v) decides between inside, edge and corner.
 template <class Shader> constexpr Cost domain_cost(double u, double v)
@@ -54,8 +57,8 @@ template <class Shader> constexpr Cost domain_cost(double u, double v)
     constexpr int N = Shader::kDomain == TessellatorDomain::Quad ? 4 : 3;
     Cost c;
     c.flops = tally([&](FlopCount* sink) {
-        ControlPoints<ControlVertex<Tally>> const patch(sink, Shader::kControlPoints,
-                                                        &c.control_points);
+        ControlPoints<typename Shader::template ControlPoint<Tally>> const patch(
+            sink, Shader::kControlPoints, &c.control_points);
         ControlPoints<EdgeRegister<Tally>> const registers(sink, 6 * N, &c.patch_constants);
         DomainInput<Tally> const in{Tally(u, sink), Tally(v, sink), Tally(1 - u - v, sink), 0};
         (void)ProjectedSurface<Shader>{}(in, patch, registers);
@@ -100,12 +103,12 @@ struct Built {
     ControlMesh mesh;
     std::unique_ptr<Topology> topology;
     std::unique_ptr<PatchMesh> patches;
-    explicit Built(std::string const& name)
+    explicit Built(std::string const& name, char const* scheme = "gregory-stencil")
     {
         for (BuiltinModel const& m : builtin_models())
             if (m.name == name) mesh = read_obj(m.obj, name).mesh;
         topology = std::make_unique<Topology>(mesh);
-        patches = find_technique("gregory-stencil").build(*topology, {});
+        patches = find_technique(scheme).build(*topology, {});
     }
 };
 
@@ -127,8 +130,10 @@ std::uint64_t fetched(StageStatistics const& s, std::string const& resource)
 TEST(DomainShader, RunTimeCountsEqualTheTallySummedOverInvocations)
 {
     std::set<std::string> kinds;
-    for (char const* name : {"jug", "spindle"}) {
-        Built const built(name);
+    for (auto [name, scheme] : {std::pair{"jug", "gregory-stencil"},
+                                {"spindle", "gregory-stencil"},
+                                {"saddle_star", "acc"}}) {
+        Built const built(name, scheme);
         for (int lanes : {4, 8, 16}) {
             PassSettings settings;
             settings.tess_factor = 5.3f;
@@ -140,6 +145,8 @@ TEST(DomainShader, RunTimeCountsEqualTheTallySummedOverInvocations)
                         double const u = double(p.points->u[i]), v = double(p.points->v[i]);
                         Cost const c = pass.kind.name == "regular quad"
                                            ? domain_cost<RegularQuadDomainShader>(u, v)
+                                       : pass.kind.name == "ACC quad"
+                                           ? domain_cost<AccQuadDomainShader>(u, v)
                                        : pass.kind.name == "Gregory quad"
                                            ? domain_cost<GregoryQuadDomainShader>(u, v)
                                            : domain_cost<GregoryTriangleDomainShader>(u, v);
@@ -159,7 +166,7 @@ TEST(DomainShader, RunTimeCountsEqualTheTallySummedOverInvocations)
             }
         }
     }
-    EXPECT_EQ(kinds.size(), 3u) << "a patch kind was not drawn";
+    EXPECT_EQ(kinds.size(), 4u) << "a patch kind was not drawn";
 }
 
 // The hull shader's: every row of every patch, 3 per non-zero weight.
@@ -171,7 +178,7 @@ TEST(HullShader, RunTimeCountsEqualThreePerNonZeroWeight)
         Neighbourhood n;
         for (std::uint32_t f = 0; f < built.mesh.faces(); ++f) {
             find_neighbourhood(*built.topology, f, n);
-            GregoryStencils const s = make_gregory_stencils(n, is_regular(*built.topology, f), {});
+            PatchStencils const s = make_gregory_stencils(n, is_regular(*built.topology, f), {});
             // Rows that run: control points, 4 an edge, one pair of tangents a corner.
             std::vector<std::size_t> rows(std::size_t(s.control_points + 4 * n.sides));
             std::iota(rows.begin(), rows.end(), std::size_t(0));

@@ -1,39 +1,25 @@
 // Control points and evaluation against golden data, through the templates that draw.
 //
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/gregory_stencils.h"
 #include "shaders_cpp/gregory/domain_shaders.h"
-#include "shaders_cpp/gregory/stencil_hull_shader.h"
 #include "tests/support/files.h"
+#include "tests/support/stencil_patch.h"
 
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
-#include <cmath>
-#include <fstream>
-#include <numeric>
 
 namespace tessemu {
 namespace {
 
 using Json = nlohmann::json;
 
-ControlMesh mesh_from(Json const& j)
-{
-    ControlMesh m;
-    for (auto const& v : j["vertices"]) m.positions.emplace_back(v[0], v[1], v[2]);
-    for (auto const& f : j["faces"]) m.add_face(f.get<std::vector<std::uint32_t>>());
-    return m;
-}
+using test::mesh_from;
 
-// A face's patch in scalar type F: the hull shader's stencil rows on the mesh's vertices, turned
-// back so that corner 0 is the face's first vertex.
-template <class F> struct Patch {
-    std::vector<F> points; // control points, three numbers each
-    double scale = 0;      // largest sum over the inputs of |weight| |coordinate|, for error bounds
-    double largest_point = 0;
-
-    ControlPoints<ControlVertex<F>> view() const { return {points.data(), int(points.size() / 3)}; }
+// A face's patch, turned back so that corner 0 is the face's first vertex.
+template <class F> struct Patch : test::StencilPatch<F> {
+    ControlPoints<ControlVertex<F>> view() const
+    {
+        return {this->points.data(), int(this->points.size() / 3)};
+    }
 };
 
 template <class F, TessellatorDomain kDomain>
@@ -41,47 +27,13 @@ Patch<F> patch_of(Topology const& topology, std::uint32_t face)
 {
     Neighbourhood n;
     find_neighbourhood(topology, face, n);
-    GregoryStencils const s = make_gregory_stencils(n, false, {});
-    int const N = n.sides;
-    std::vector<F> weights, input;
-    std::vector<std::uint32_t> masks, words;
-    std::vector<std::uint8_t> order(n.inputs.size());
-    Patch<F> out;
-    for (std::size_t i = 0; i < n.inputs.size(); ++i) {
-        for (auto const& row : s.rows) weights.push_back(F(row[i]));
-        for (int k = 0; k < 3; ++k) input.push_back(F(topology.mesh().positions[n.inputs[i]][k]));
-    }
-    for (auto const& row : s.rows) {
-        std::uint32_t mask = 0;
-        double sum[3] = {};
-        for (std::size_t i = 0; i < row.size(); ++i) {
-            if (F(row[i]) != 0) mask |= 1u << i;
-            for (std::size_t k = 0; k < 3; ++k)
-                sum[k] += std::abs(row[i] * double(input[3 * i + k]));
-        }
-        masks.push_back(mask);
-        for (double x : sum) out.scale = std::max(out.scale, x);
-    }
-    words = {0, 0, std::uint32_t(s.rows.size()), 0, 0, 0, 0, 0};
-    std::iota(order.begin(), order.end(), std::uint8_t(0));
-    std::sort(order.begin(), order.end(),
-              [&](auto a, auto b) { return n.inputs[a] < n.inputs[b]; });
-    StencilHullShader<kDomain, F> hs;
-    hs.points = s.control_points;
-    hs.weights = {weights, 0, "weights"};
-    hs.zero_masks = {masks, 1, "masks"};
-    hs.patches = {words, 2, "words"};
-    hs.order = {order, 3, "order"};
-    ControlPoints<ControlVertex<F>> const in(input.data(), int(n.inputs.size()));
-    out.points.resize(std::size_t(s.control_points) * 3);
-    for (int id = 0; id < s.control_points; ++id) {
-        ControlVertex<F> const p = hs.template control_point<F>({0}, in, id);
-        int const kind = id / N, corner = (id % N + n.rotation) % N;
-        F* const at = out.points.data() + 3 * (kind * N + corner);
-        at[0] = p.position.x, at[1] = p.position.y, at[2] = p.position.z;
-        for (int k = 0; k < 3; ++k)
-            out.largest_point = std::max(out.largest_point, std::abs(double(at[k])));
-    }
+    test::StencilPatch<F> const rotated = test::run_stencils<F, StencilHullShader<kDomain, F>>(
+        topology.mesh(), n, make_gregory_stencils(n, false, {}));
+    Patch<F> out{rotated};
+    auto const N = std::size_t(n.sides);
+    for (std::size_t id = 0; id < 5 * N; ++id)
+        std::copy_n(rotated.points.data() + 3 * id, 3,
+                    out.points.data() + 3 * (id / N * N + (id + std::size_t(n.rotation)) % N));
     return out;
 }
 
@@ -214,7 +166,7 @@ TEST(GregoryStencils, AgreeWithGoldenStencilsAndSumToOne)
             std::uint32_t const face = g["face"];
             Neighbourhood n;
             find_neighbourhood(topology, face, n);
-            GregoryStencils const s = make_gregory_stencils(n, false, {});
+            PatchStencils const s = make_gregory_stencils(n, false, {});
             auto const inputs = g["inputs"].get<std::vector<std::uint32_t>>();
             EXPECT_EQ(inputs, topology.two_ring(face));
             for (int i = 0; i < n.sides; ++i)
@@ -245,7 +197,7 @@ TEST(GregoryStencils, RegularFaceIsTheBSpline)
     ASSERT_TRUE(is_regular(topology, 0));
     Neighbourhood n;
     find_neighbourhood(topology, 0, n);
-    GregoryStencils const regular = make_gregory_stencils(n, true, {});
+    PatchStencils const regular = make_gregory_stencils(n, true, {});
     ASSERT_EQ(regular.control_points, 16);
     // f is (4 v + 2 d + 2 d' + x) / 9
     auto const& f0 = regular.rows[12];
@@ -257,7 +209,7 @@ TEST(GregoryStencils, RegularFaceIsTheBSpline)
     EXPECT_NEAR(sorted[3], 1.0 / 9, 1e-15);
     for (std::size_t i = 4; i < sorted.size(); ++i) EXPECT_NEAR(sorted[i], 0, 1e-15);
     // The Gregory patch of the same face has f+ = f-.
-    GregoryStencils const gregory = make_gregory_stencils(n, false, {});
+    PatchStencils const gregory = make_gregory_stencils(n, false, {});
     for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t k = 0; k < n.inputs.size(); ++k)
             EXPECT_NEAR(gregory.rows[12 + i][k], gregory.rows[16 + i][k], 1e-15);

@@ -13,7 +13,7 @@
 #pragma once
 
 #include "emu/hull_shader.h"
-#include "shaders_cpp/gregory/watertight_edge.h"
+#include "shaders_cpp/watertight_patch.h"
 
 namespace tessemu {
 
@@ -36,8 +36,8 @@ template <TessellatorDomain kDomain_, class Weight = float> struct StencilHullSh
     template <class T> using ControlPoint = ControlVertex<T>;
     template <class T> using PatchConstant = EdgeRegister<T>;
 
-    int points = 20;        ///< output control points
-    Buffer<Weight> weights; ///< [type][input][row]
+    int points = 20;        ///< output control points that are sums
+    Buffer<Weight> weights; ///< [type][input][row], then the type's constants
     Buffer<std::uint32_t>
         zero_masks;                ///< [type][row]: bit i set where the weight of input i is not 0
     Buffer<std::uint32_t> patches; ///< [patch][StencilPatchWords]
@@ -49,6 +49,14 @@ template <TessellatorDomain kDomain_, class Weight = float> struct StencilHullSh
     std::vector<ResourceInfo> resources() const
     {
         return {weights.info(), zero_masks.info(), patches.info(), order.info()};
+    }
+
+    /// Where the constants of the patch's type begin among the weights.
+    template <class T> std::int32_t constants(PatchInput patch, int inputs) const
+    {
+        std::int32_t const words = patch.primitive_id * StencilPatchWords::count(kSides);
+        return load<T>(patches, words + StencilPatchWords::kWeights) +
+               inputs * load<T>(patches, words + StencilPatchWords::kRows);
     }
 
     /// One row of the stencil.
@@ -91,7 +99,7 @@ template <TessellatorDomain kDomain_, class Weight = float> struct StencilHullSh
     /// vectors and their signs, W_m = +-E_(3-m).
     template <class T>
     EdgeRegister<T> patch_constant(PatchInput patch, ControlPoints<ControlVertex<T>> const& in,
-                                   ControlPoints<ControlVertex<T>> const&, int_of<T> id) const
+                                   auto const&, int_of<T> id) const
     {
         using Int = int_of<T>;
         std::int32_t const words = patch.primitive_id * StencilPatchWords::count(kSides);
@@ -109,8 +117,7 @@ template <TessellatorDomain kDomain_, class Weight = float> struct StencilHullSh
     }
 
     template <class T>
-    std::array<T, 6> tess_factors(PatchInput, ControlPoints<ControlVertex<T>> const&,
-                                  ControlPoints<ControlVertex<T>> const&,
+    std::array<T, 6> tess_factors(PatchInput, ControlPoints<ControlVertex<T>> const&, auto const&,
                                   ControlPoints<EdgeRegister<T>> const&) const
     {
         return {T(factors[0]), T(factors[1]), T(factors[2]),

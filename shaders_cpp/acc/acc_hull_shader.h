@@ -1,0 +1,40 @@
+// Hull shader of ACC in stencil form: 24 sums, and the corners' cosines as the 25th control point.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "shaders_cpp/acc/acc_quad.h"
+#include "shaders_cpp/stencil_hull_shader.h"
+
+namespace tessemu {
+
+/// \tparam Weight  float; double in tests of the formulas
+template <class Weight = float>
+struct AccHullShader : StencilHullShader<TessellatorDomain::Quad, Weight> {
+    using Sums = StencilHullShader<TessellatorDomain::Quad, Weight>;
+    template <class T> using ControlPoint = AccControlPoint<T>;
+
+    int control_points() const { return AccLayout::kPoints; }
+
+    template <class T>
+    AccControlPoint<T> control_point(PatchInput patch, ControlPoints<ControlVertex<T>> const& in,
+                                     int_of<T> id) const
+    {
+        using Int = int_of<T>;
+        T const zero(0);
+        float3<T> const sum = when(
+            id < Int(AccLayout::kCosines),
+            [&]() -> float3<T> { return Sums::template stencil_row<T>(patch, in, id); },
+            float3<T>(zero, zero, zero));
+        return when(
+            id == Int(AccLayout::kCosines),
+            [&] {
+                std::int32_t const at = Sums::template constants<T>(patch, in.size());
+                auto const c = [&](int i) -> T { return load<T>(Sums::weights, at + i); };
+                return AccControlPoint<T>{{c(0), c(1), c(2), c(3)}};
+            },
+            AccControlPoint<T>{{sum, zero}});
+    }
+};
+
+} // namespace tessemu
