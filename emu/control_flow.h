@@ -20,6 +20,9 @@ template <template <class> class R, class T>
 requires(!ShaderScalar<R<T>>) struct ScalarIn<R<T>> {
     using type = T;
 };
+template <template <int, class> class R, int n, class T> struct ScalarIn<R<n, T>> {
+    using type = T;
+};
 
 class Branch {
 public:

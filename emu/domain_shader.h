@@ -101,9 +101,9 @@ public:
         }
         counters.invocations += b.points;
         counters.input_fetches += points.fetches();
-        counters.input_touched += std::uint64_t(std::popcount(points.touched()));
+        counters.input_touched += points.touched();
         counters.constant_fetches += constants.fetches();
-        counters.constant_touched += std::uint64_t(std::popcount(constants.touched()));
+        counters.constant_touched += constants.touched();
     }
 
 private:

@@ -219,13 +219,15 @@ private:
         p.HSControlPointInvocations = hull_.invocations * std::uint64_t(hs.control_points());
         p.HSPatchConstantInvocations = hull_.invocations * std::uint64_t(hs.patch_constants() + 1);
         std::size_t const point_bytes = std::size_t(hs.control_point_floats()) * sizeof(float);
+        std::size_t const fetch_bytes =
+            std::size_t(hs.control_point_fetch_floats()) * sizeof(float);
         std::size_t const constant_bytes = std::size_t(hs.patch_constant_floats()) * sizeof(float);
         StageStatistics& h = add_stage("hull_shader", hull_.invocations, hull_);
         add_fetch(h, "input_control_points", ResourceKind::ControlPoint, hull_.input_fetches,
-                  hull_.input_touched, std::size_t(hs.input_floats()) * sizeof(float));
+                  hull_.input_touched, std::size_t(hs.input_fetch_floats()) * sizeof(float));
         if (hull_.output_fetches)
             add_fetch(h, "output_control_points", ResourceKind::ControlPoint, hull_.output_fetches,
-                      hull_.output_touched, point_bytes);
+                      hull_.output_touched, fetch_bytes);
         if (hull_.constant_fetches)
             add_fetch(h, "patch_constants", ResourceKind::PatchConstant, hull_.constant_fetches,
                       hull_.constant_touched, constant_bytes);
@@ -242,7 +244,7 @@ private:
         p.DSInvocations = domain_.invocations;
         StageStatistics& s = add_stage("domain_shader", domain_.invocations, domain_);
         add_fetch(s, "control_points", ResourceKind::ControlPoint, domain_.input_fetches,
-                  domain_.input_touched, point_bytes);
+                  domain_.input_touched, fetch_bytes);
         add_fetch(s, "patch_constants", ResourceKind::PatchConstant, domain_.constant_fetches,
                   domain_.constant_touched, constant_bytes);
         stages_.domain_buffers().report(domain_, s);

@@ -59,8 +59,10 @@ public:
     virtual ~HullProgram() = default;
     virtual TessellatorDomain domain() const = 0;
     virtual int input_floats() const = 0;         ///< of one control point
+    virtual int input_fetch_floats() const = 0;   ///< of one fetch, see ControlPoints
     virtual int control_points() const = 0;       ///< output control points
     virtual int control_point_floats() const = 0; ///< of one output control point
+    virtual int control_point_fetch_floats() const = 0;
     virtual int patch_constants() const = 0;
     virtual int patch_constant_floats() const = 0;
     virtual float max_tess_factor() const = 0; ///< [maxtessfactor], 64 where not declared (R53)
@@ -82,6 +84,8 @@ public:
     HullProgramOn(Shader const& shader, std::uint64_t seed) : shader_(shader), seed_(seed) {}
     TessellatorDomain domain() const override { return Shader::kDomain; }
     int input_floats() const override { return int(kIn); }
+    int input_fetch_floats() const override { return ControlPoints<Input>::kFetchScalars; }
+    int control_point_fetch_floats() const override { return ControlPoints<Point>::kFetchScalars; }
     int control_points() const override { return shader_.control_points(); }
     int control_point_floats() const override { return int(kOut); }
     int patch_constants() const override { return shader_.patch_constants(); }
@@ -127,11 +131,11 @@ public:
             for (std::size_t i = 0; i < 6; ++i) b.factors[p][i] = lanes_value(f[i]).raw[0];
 
             counters.input_fetches += input.fetches();
-            counters.input_touched += std::uint64_t(std::popcount(input.touched()));
+            counters.input_touched += input.touched();
             counters.output_fetches += output.fetches();
-            counters.output_touched += std::uint64_t(std::popcount(output.touched()));
+            counters.output_touched += output.touched();
             counters.constant_fetches += forked.fetches();
-            counters.constant_touched += std::uint64_t(std::popcount(forked.touched()));
+            counters.constant_touched += forked.touched();
         }
         counters.invocations += b.patches;
     }

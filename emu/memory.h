@@ -8,6 +8,7 @@
 
 #include "emu/control_flow.h"
 
+#include <array>
 #include <atomic>
 #include <cassert>
 #include <memory>
@@ -176,15 +177,28 @@ template <class T, class E, int N> auto load(Buffer<E> const& buffer, IntLanes<N
         return r;
 }
 
-/// Records of one patch (HLSL: InputPatch, OutputPatch, patch constants): each [] is a counted
-/// fetch of a whole record.
+/// Records of one patch (HLSL: InputPatch, OutputPatch, patch constants).
+///
+/// Each [] is a counted fetch of a whole record. A record that is an array of vectors (it declares
+/// kVectors) is read by vector(), a counted fetch of 3 scalars each.
 ///
 /// \tparam P  record, templated on the shader's scalar
 template <class P> class ControlPoints {
     using T = scalar_of<P>;
     static constexpr bool kCounted = ScalarTraits<T>::kCounted;
+    static constexpr int vectors()
+    {
+        if constexpr (requires { P::kVectors; })
+            return P::kVectors;
+        else
+            return 1;
+    }
+    static constexpr int kVectors = vectors();
 
 public:
+    /// What a fetch reads.
+    static constexpr int kFetchScalars = kVectors > 1 ? 3 : scalar_count<P>();
+
     /// `count` records from `memory`, the same patch for every lane.
     constexpr ControlPoints(storage_of<T> const* memory, int count) : memory_(memory), count_(count)
     {
@@ -223,7 +237,7 @@ public:
         if constexpr (kCounted) {
             fetches_ += execution.active_lanes;
             for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1)
-                touched_ |= std::uint64_t(1) << i.raw[std::countr_zero(bits)];
+                mark(i.raw[std::countr_zero(bits)] & 127);
         }
         P p{};
         int k = 0;
@@ -239,17 +253,52 @@ public:
         return p;
     }
 
+    /// Vector k of record i, the same for every lane.
+    constexpr float3<T> vector(std::int32_t i, std::int32_t k) const
+    {
+        assert(i >= 0 && i < count_ && k >= 0 && k < kVectors);
+        touch(i * kVectors + k);
+        if constexpr (ScalarTraits<T>::kTally) {
+            if (fetch_sink_) ++*fetch_sink_;
+            return {T(1.0, sink_), T(1.0, sink_), T(1.0, sink_)};
+        } else {
+            return load_record<float3<T>>(memory_ + i * kScalars + 3 * k);
+        }
+    }
+    /// Vector k of record i per lane; zeros out of range.
+    template <int N> float3<T> vector(IntLanes<N> i, IntLanes<N> k) const
+    {
+        Lanes<N> v[3] = {0.0f, 0.0f, 0.0f};
+        for (int lane = 0; lane < N; ++lane) {
+            std::int32_t const record = i.raw[lane], at = k.raw[lane];
+            if (record < 0 || record >= count_ || at < 0 || at >= kVectors) continue;
+            if (kCounted && (execution.active_bits >> lane & 1)) mark(record * kVectors + at);
+            for (int c = 0; c < 3; ++c) v[c].raw[lane] = memory_[record * kScalars + 3 * at + c];
+        }
+        if constexpr (kCounted) fetches_ += execution.active_lanes;
+        return {T(v[0]), T(v[1]), T(v[2])};
+    }
+
     /// Fetches counted through this view.
     constexpr std::uint64_t fetches() const { return fetches_; }
-    /// Bit i: record i was read.
-    constexpr std::uint64_t touched() const { return touched_; }
+    /// How many different records, or vectors, were read.
+    constexpr std::uint64_t touched() const
+    {
+        std::uint64_t n = 0;
+        for (std::uint64_t word : touched_) n += std::uint64_t(std::popcount(word));
+        return n;
+    }
 
 private:
-    constexpr void touch(std::int32_t i) const
+    constexpr void mark(std::int32_t unit) const
+    {
+        touched_[std::size_t(unit) / 64 % touched_.size()] |= std::uint64_t(1) << (unit % 64);
+    }
+    constexpr void touch(std::int32_t unit) const
     {
         if constexpr (kCounted) {
             fetches_ += execution.active_lanes;
-            touched_ |= std::uint64_t(1) << (i & 63);
+            mark(unit);
         }
     }
 
@@ -257,7 +306,9 @@ private:
     FlopCount* sink_ = nullptr;           // of a tally
     std::uint64_t* fetch_sink_ = nullptr; // of a tally
     int count_ = 0;
-    mutable std::uint64_t fetches_ = 0, touched_ = 0;
+    mutable std::uint64_t fetches_ = 0;
+    // At most 128 patch constants; 32 records of at most 32 vectors.
+    mutable std::array<std::uint64_t, kVectors == 1 ? 2 : 16> touched_{};
 };
 
 } // namespace tessemu

@@ -17,6 +17,7 @@
 
 #include "emu/scalar.h"
 
+#include <array>
 #include <tuple>
 #include <type_traits>
 
@@ -146,6 +147,11 @@ concept Record = requires
 };
 
 namespace detail {
+template <class V> inline constexpr std::size_t array_size = 0;
+template <class V, std::size_t n> inline constexpr std::size_t array_size<std::array<V, n>> = n;
+} // namespace detail
+
+namespace detail {
 template <class P> struct Rebind;
 template <template <class> class P, class T> struct Rebind<P<T>> {
     template <class U> using to = P<U>;
@@ -161,6 +167,8 @@ template <class P, class F> constexpr void for_each_scalar(P& p, F&& f)
     using V = std::remove_const_t<P>;
     if constexpr (Record<V>)
         std::apply([&](auto... member) { (for_each_scalar(p.*member, f), ...); }, V::signature());
+    else if constexpr (detail::array_size<V> > 0)
+        for (auto& element : p) for_each_scalar(element, f);
     else if constexpr (requires { p.w; })
         f(p.x), f(p.y), f(p.z), f(p.w);
     else if constexpr (requires { p.z; })
@@ -181,6 +189,8 @@ template <class P> constexpr int scalar_count()
                         scalar_count<std::remove_cvref_t<decltype(std::declval<P&>().*member)>>());
             },
             P::signature());
+    } else if constexpr (detail::array_size<P> > 0) {
+        return int(detail::array_size<P>) * scalar_count<typename P::value_type>();
     } else {
         if constexpr (requires(P p) { p.w; })
             return 4;
@@ -228,6 +238,10 @@ template <class M, class P> constexpr P select_record(M mask, P const& yes, P co
                 ((r.*member = select_record(mask, yes.*member, no.*member)), ...);
             },
             P::signature());
+        return r;
+    } else if constexpr (detail::array_size<P> > 0) {
+        P r = no;
+        for (std::size_t i = 0; i < r.size(); ++i) r[i] = select_record(mask, yes[i], no[i]);
         return r;
     } else if constexpr (requires { yes.w; }) {
         return P(select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z),

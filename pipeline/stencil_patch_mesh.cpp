@@ -37,12 +37,7 @@ public:
     {
         static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
         collect(topology);
-        if (!mesh_.creases.empty())
-            warnings_.push_back(std::to_string(mesh_.creases.size()) +
-                                " crease edges are drawn smooth: the scheme knows no creases");
-        if (!mesh_.corners.empty())
-            warnings_.push_back(std::to_string(mesh_.corners.size()) +
-                                " sharp corners are drawn smooth: the scheme knows no corners");
+        warn_of_tags(mesh_, warnings_);
     }
 
     std::vector<DrawPass> passes(PassSettings const& settings) const override
@@ -100,19 +95,7 @@ private:
 
     void collect(Topology const& topology)
     {
-        std::vector<char> hidden(mesh_.faces(), 0);
-        for (std::uint32_t f : mesh_.holes) hidden[f] = 1;
-        if (mesh_.boundary == BoundaryRule::None) {
-            std::size_t dropped = 0;
-            for (std::uint32_t f = 0; f < mesh_.faces(); ++f)
-                for (std::uint32_t v : mesh_.face(f))
-                    if (topology.is_boundary(v) && !hidden[f]) hidden[f] = 1, ++dropped;
-            if (dropped)
-                warnings_.push_back(
-                    std::to_string(dropped) +
-                    " faces at the boundary are not drawn: interpolateboundary is 0");
-        }
-
+        std::vector<char> const hidden = hidden_faces(topology, warnings_);
         std::unordered_map<std::string, std::uint32_t> type_ids;
         std::vector<Patch> patches;
         Neighbourhood n;

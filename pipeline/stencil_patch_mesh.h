@@ -39,15 +39,6 @@ struct StencilScheme {
 /// then linear in the faces.
 std::unique_ptr<PatchMesh> make_stencil_patch_mesh(Topology const& topology, StencilScheme scheme);
 
-/// The scheme's surface, projected, on the settings' machine.
-template <class Surface>
-std::shared_ptr<DomainProgram const> projected_domain_program(PassSettings const& settings)
-{
-    return make_domain_program(
-        ProjectedSurface<Surface>{{settings.true_normals}, settings.view_projection},
-        settings.machine);
-}
-
 /// A hull shader with a StencilHullShader's members on the buffers of a kind.
 template <class Shader>
 std::shared_ptr<HullProgram const> stencil_hull_program(StencilBuffers const& buffers, int sums,

@@ -4,6 +4,7 @@
 #include "pipeline/acc_technique.h"
 #include "pipeline/catmull_clark.h"
 #include "pipeline/gregory_stencil_technique.h"
+#include "pipeline/gregory_two_stage_technique.h"
 
 #include <algorithm>
 
@@ -14,6 +15,7 @@ std::vector<std::unique_ptr<Technique>> const& techniques()
     static std::vector<std::unique_ptr<Technique>> const all = [] {
         std::vector<std::unique_ptr<Technique>> t;
         t.push_back(make_gregory_stencil_technique());
+        t.push_back(make_gregory_two_stage_technique());
         t.push_back(make_acc_technique());
         return t;
     }();
@@ -46,6 +48,32 @@ FacePoint domain_to_face(PatchOrigin const& origin, float u, float v)
     default:
         return {u, v};
     }
+}
+
+std::vector<char> hidden_faces(Topology const& topology, std::vector<std::string>& warnings)
+{
+    ControlMesh const& mesh = topology.mesh();
+    std::vector<char> hidden(mesh.faces(), 0);
+    for (std::uint32_t f : mesh.holes) hidden[f] = 1;
+    if (mesh.boundary != BoundaryRule::None) return hidden;
+    std::size_t dropped = 0;
+    for (std::uint32_t f = 0; f < mesh.faces(); ++f)
+        for (std::uint32_t v : mesh.face(f))
+            if (topology.is_boundary(v) && !hidden[f]) hidden[f] = 1, ++dropped;
+    if (dropped)
+        warnings.push_back(std::to_string(dropped) +
+                           " faces at the boundary are not drawn: interpolateboundary is 0");
+    return hidden;
+}
+
+void warn_of_tags(ControlMesh const& mesh, std::vector<std::string>& warnings)
+{
+    if (!mesh.creases.empty())
+        warnings.push_back(std::to_string(mesh.creases.size()) +
+                           " crease edges are drawn smooth: the scheme knows no creases");
+    if (!mesh.corners.empty())
+        warnings.push_back(std::to_string(mesh.corners.size()) +
+                           " sharp corners are drawn smooth: the scheme knows no corners");
 }
 
 PreparedMesh prepare_mesh(ControlMesh mesh, Technique const& technique)

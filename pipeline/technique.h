@@ -98,6 +98,21 @@ public:
     build(Topology const& topology, std::map<std::string, double> const& parameters) const = 0;
 };
 
+/// The scheme's surface, projected, on the settings' machine.
+template <class Surface>
+std::shared_ptr<DomainProgram const> projected_domain_program(PassSettings const& settings)
+{
+    return make_domain_program(
+        ProjectedSurface<Surface>{{settings.true_normals}, settings.view_projection},
+        settings.machine);
+}
+
+/// Faces that are not drawn: the mesh's holes, and with BoundaryRule::None those at the boundary,
+/// with a warning.
+std::vector<char> hidden_faces(Topology const& topology, std::vector<std::string>& warnings);
+/// Warns of creases and sharp corners, which no scheme of LOOP09 knows.
+void warn_of_tags(ControlMesh const& mesh, std::vector<std::string>& warnings);
+
 /// All techniques in the order of the papers.
 std::vector<std::unique_ptr<Technique>> const& techniques();
 /// Throws Error that lists the known names.

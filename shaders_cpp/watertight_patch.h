@@ -17,8 +17,8 @@ namespace tessemu {
 /// A register of the patch constants.
 ///
 /// Registers 4k + m, m = 0..3, hold the transversal field W of edge k (corner k to k+1) in
-/// canonical direction; after those of all edges, registers 2i and 2i + 1 hold two tangents of
-/// corner i.
+/// canonical direction; after those of all edges come the corners' normals, or two tangents for
+/// each.
 template <class T> struct EdgeRegister {
     float3<T> vector;
     T reversed; ///< of the edge: 1 if its canonical direction runs from corner k+1 to k, else 0
@@ -44,6 +44,17 @@ template <int N, class Patch> constexpr auto cubic_edge(Patch const& patch, int 
     using T = std::remove_cvref_t<decltype(p0.x)>;
     return EdgeCurve<T>{p0, p1, p2, p3, float3<T>(p1 - p0), float3<T>(p3 - p2)};
 }
+
+/// Corners' registers are pairs of tangents, 2i and 2i + 1.
+template <int N> struct TangentPairCorners {
+    template <class T>
+    static constexpr float3<T> corner_normal(ControlPoints<EdgeRegister<T>> const& registers, int i)
+    {
+        float3<T> const a = registers[4 * N + 2 * i].vector;
+        float3<T> const b = registers[4 * N + 2 * i + 1].vector;
+        return cross(a, b);
+    }
+};
 
 /// Point and normal direction of a shared edge.
 ///
@@ -87,8 +98,10 @@ template <class T> constexpr float3<T> unit_or_zero(float3<T> const& v)
 ///             ControlPoints<ControlPoint<T>> const&, DomainInput<T> const&, bool true_normals);
 ///         template <class T> static EdgeCurve<T> edge(
 ///             ControlPoints<ControlPoint<T>> const&, int k);   // from corner k to corner k+1
-///         template <class T> static float3<T> corner(ControlPoints<ControlPoint<T>> const&, int
-///         i);
+///         template <class T> static float3<T> corner(
+///             ControlPoints<ControlPoint<T>> const&, int i);
+///         template <class T> static float3<T> corner_normal(
+///             ControlPoints<EdgeRegister<T>> const&, int i);
 ///     };
 ///
 /// Quad domain: corners p0 (0,0), p1 (1,0), p2 (1,1), p3 (0,1). Tri domain: u = 1 at p0, v = 1 at
@@ -178,9 +191,8 @@ private:
             s = when(
                 on[k] & on[previous],
                 [&] {
-                    float3<T> const a = registers[4 * N + 2 * k].vector;
-                    float3<T> const b = registers[4 * N + 2 * k + 1].vector;
-                    return SurfacePoint<T>{Inside::template corner<T>(patch, k), cross(a, b)};
+                    return SurfacePoint<T>{Inside::template corner<T>(patch, k),
+                                           Inside::template corner_normal<T>(registers, k)};
                 },
                 s);
         }

@@ -111,7 +111,7 @@ constexpr TangentFrame<T> acc_quad(ControlPoints<AccControlPoint<T>> const& patc
                       cubic(Bu, W02, -top[0], -top[1], W32))};
 }
 
-struct AccQuadInside {
+struct AccQuadInside : TangentPairCorners<4> {
     static constexpr TessellatorDomain kDomain = TessellatorDomain::Quad;
     static constexpr int kControlPoints = AccLayout::kPoints;
     template <class T> using ControlPoint = AccControlPoint<T>;

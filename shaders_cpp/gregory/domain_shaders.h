@@ -12,15 +12,13 @@ namespace tessemu {
 
 /// Patches whose control points begin with p, e+, e- and whose edge condition is about the edge
 /// curve's own derivative.
-template <int N> struct GregoryEdges {
+template <int N> struct GregoryEdges : TangentPairCorners<N> {
     template <class T> using ControlPoint = ControlVertex<T>;
-    template <class T>
-    static constexpr EdgeCurve<T> edge(ControlPoints<ControlVertex<T>> const& patch, int k)
+    template <class T> static constexpr EdgeCurve<T> edge(auto const& patch, int k)
     {
         return cubic_edge<N>(patch, k);
     }
-    template <class T>
-    static constexpr float3<T> corner(ControlPoints<ControlVertex<T>> const& patch, int i)
+    template <class T> static constexpr float3<T> corner(auto const& patch, int i)
     {
         return patch[i].position;
     }
@@ -30,8 +28,7 @@ struct RegularQuadInside : GregoryEdges<4> {
     static constexpr TessellatorDomain kDomain = TessellatorDomain::Quad;
     static constexpr int kControlPoints = 16;
     template <class T>
-    static constexpr TangentFrame<T> evaluate(ControlPoints<ControlVertex<T>> const& patch,
-                                              DomainInput<T> const& in, bool)
+    static constexpr TangentFrame<T> evaluate(auto const& patch, DomainInput<T> const& in, bool)
     {
         return regular_quad<T>(patch, in.u, in.v);
     }
@@ -41,8 +38,8 @@ struct GregoryQuadInside : GregoryEdges<4> {
     static constexpr TessellatorDomain kDomain = TessellatorDomain::Quad;
     static constexpr int kControlPoints = 20;
     template <class T>
-    static constexpr TangentFrame<T> evaluate(ControlPoints<ControlVertex<T>> const& patch,
-                                              DomainInput<T> const& in, bool true_normals)
+    static constexpr TangentFrame<T> evaluate(auto const& patch, DomainInput<T> const& in,
+                                              bool true_normals)
     {
         return gregory_quad<T>(patch, in.u, in.v, true_normals);
     }
@@ -52,8 +49,8 @@ struct GregoryTriangleInside : GregoryEdges<3> {
     static constexpr TessellatorDomain kDomain = TessellatorDomain::Tri;
     static constexpr int kControlPoints = 15;
     template <class T>
-    static constexpr TangentFrame<T> evaluate(ControlPoints<ControlVertex<T>> const& patch,
-                                              DomainInput<T> const& in, bool true_normals)
+    static constexpr TangentFrame<T> evaluate(auto const& patch, DomainInput<T> const& in,
+                                              bool true_normals)
     {
         return gregory_triangle<T>(patch, in.u, in.v, in.w, true_normals);
     }

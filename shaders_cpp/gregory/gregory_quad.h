@@ -62,8 +62,7 @@ template <class T> struct BlendedFacePoint {
 /// \returns             position and derivatives along u and v
 /// \cost                frozen: 188 mul, 4 div (with the cross product 194 + 4 = 198)
 template <class T>
-constexpr TangentFrame<T> gregory_quad(ControlPoints<ControlVertex<T>> const& patch, T u, T v,
-                                       bool true_normals = false)
+constexpr TangentFrame<T> gregory_quad(auto const& patch, T u, T v, bool true_normals = false)
 {
     using L = GregoryLayout<4>;
     Routine<T> const here("gregory_quad");

@@ -22,8 +22,8 @@ namespace tessemu {
 /// \returns             position, and a quarter of the derivatives along (1,0,-1) and (0,1,-1)
 /// \cost                frozen: 249 mul, 3 div (with the cross product 255 + 3 = 258)
 template <class T>
-constexpr TangentFrame<T> gregory_triangle(ControlPoints<ControlVertex<T>> const& patch, T u, T v,
-                                           T w, bool true_normals = false)
+constexpr TangentFrame<T> gregory_triangle(auto const& patch, T u, T v, T w,
+                                           bool true_normals = false)
 {
     using L = GregoryLayout<3>;
     Routine<T> const here("gregory_triangle");

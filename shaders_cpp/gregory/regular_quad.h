@@ -16,7 +16,7 @@ namespace tessemu {
 /// \returns      position and derivatives along u and v
 /// \cost         156 mul (162 with the cross product)
 template <class T>
-constexpr TangentFrame<T> regular_quad(ControlPoints<ControlVertex<T>> const& patch, T u, T v)
+constexpr TangentFrame<T> regular_quad(auto const& patch, T u, T v)
 {
     using L = GregoryLayout<4>;
     Routine<T> const here("regular_quad");

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 namespace tessemu {
@@ -80,26 +81,36 @@ TEST(Acc, SharedEdgesOfBuiltInCagesHaveEqualBits)
     expect_closed("saddle_star", "acc");
 }
 
-class AccOn : public testing::TestWithParam<char const*> {};
-
-TEST_P(AccOn, SharedEdgesHaveEqualBitsUnderEveryContraction)
+TEST(GregoryTwoStage, SharedEdgesOfBuiltInCagesHaveEqualBits)
 {
-    std::string const file = std::string("models/") + GetParam() + ".obj";
-    TESSEMU_NEEDS_SHARED(file);
-    expect_closed(test::shared(file).string(), "acc");
+    for (char const* model : {"jug", "spindle", "saddle_star"})
+        expect_closed(model, "gregory-two-stage");
 }
-INSTANTIATE_TEST_SUITE_P(Models, AccOn, testing::Values("bigguy", "monsterfrog"));
 
-class GregoryStencilOn : public testing::TestWithParam<char const*> {};
+using SchemeAndModel = std::pair<char const*, char const*>;
+class SchemeOn : public testing::TestWithParam<SchemeAndModel> {};
 
-TEST_P(GregoryStencilOn, SharedEdgesHaveEqualBitsUnderEveryContraction)
+TEST_P(SchemeOn, SharedEdgesHaveEqualBitsUnderEveryContraction)
 {
-    std::string const file = std::string("models/") + GetParam() + ".obj";
+    auto const [scheme, model] = GetParam();
+    std::string const file = std::string("models/") + model + ".obj";
     TESSEMU_NEEDS_SHARED(file);
-    expect_closed(test::shared(file).string());
+    expect_closed(test::shared(file).string(), scheme);
 }
-INSTANTIATE_TEST_SUITE_P(Models, GregoryStencilOn,
-                         testing::Values("bigguy", "monsterfrog", "suzanne"));
+INSTANTIATE_TEST_SUITE_P(
+    Models, SchemeOn,
+    testing::Values(SchemeAndModel{"gregory-stencil", "bigguy"},
+                    SchemeAndModel{"gregory-stencil", "monsterfrog"},
+                    SchemeAndModel{"gregory-stencil", "suzanne"}, SchemeAndModel{"acc", "bigguy"},
+                    SchemeAndModel{"acc", "monsterfrog"},
+                    SchemeAndModel{"gregory-two-stage", "bigguy"},
+                    SchemeAndModel{"gregory-two-stage", "monsterfrog"},
+                    SchemeAndModel{"gregory-two-stage", "suzanne"}),
+    [](auto const& test) {
+        std::string name = std::string(test.param.first) + "_" + test.param.second;
+        std::replace(name.begin(), name.end(), '-', '_');
+        return name;
+    });
 
 enum class EdgeRule { LeftToRight, MirrorPairs };
 

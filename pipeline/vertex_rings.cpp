@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/vertex_rings.h"
+
+#include "pipeline/loop09_constants.h"
+
+#include <algorithm>
+
+namespace tessemu {
+
+VertexRings::VertexRings(Topology const& topology)
+{
+    ControlMesh const& mesh = topology.mesh();
+    constexpr std::uint32_t kNone = RingVertexShader<>::kNone;
+    constexpr auto kWidth = std::size_t(RingVertexShader<>::kTextureWidth);
+    std::size_t const vertices = mesh.positions.size();
+    rings.reserve(2 * vertices);
+    for (std::uint32_t v = 0; v < vertices; ++v) {
+        auto const ring = topology.ring(v);
+        bool const boundary = !ring.empty() && topology.is_boundary(v);
+        if (topology.valence(v) > std::uint32_t(RingLayout::kEdges) && !ring.empty())
+            throw LimitError("edges at vertex " + std::to_string(v + 1) +
+                                 ", by the vertex shader's output registers,",
+                             topology.valence(v), std::uint64_t(RingLayout::kEdges));
+        rings.push_back(std::uint32_t(entries.size() / 2));
+        rings.push_back(std::uint32_t(ring.size()) | (boundary ? 256u : 0u));
+        for (HalfEdge h : ring) {
+            bool const quad = mesh.face(topology.face_of(h)).size() == 4;
+            entries.push_back(topology.vertex_of(topology.next(h)));
+            entries.push_back(quad ? topology.vertex_of(topology.next(topology.next(h))) : kNone);
+        }
+        if (boundary) {
+            entries.push_back(topology.vertex_of(topology.previous(ring.back())));
+            entries.push_back(kNone);
+        }
+    }
+    height = int((vertices + kWidth - 1) / kWidth);
+    positions.resize(std::size_t(height) * kWidth * 4);
+    for (std::size_t v = 0; v < vertices; ++v)
+        for (int k = 0; k < 3; ++k) positions[4 * v + std::size_t(k)] = mesh.positions[v][k];
+}
+
+std::uint32_t corner_offsets(Topology const& topology, HalfEdge corner)
+{
+    std::uint32_t const v = topology.vertex_of(corner);
+    auto const faces = std::uint32_t(topology.ring(v).size());
+    bool const boundary = topology.is_boundary(v);
+    std::uint32_t const plus = topology.ring_index(corner);
+    std::uint32_t const minus = boundary ? plus + 1 : (plus + 1) % faces;
+    std::uint32_t const row = faces + (boundary ? std::uint32_t(RingConstants::kBoundaryRows) : 0);
+    return plus | minus << 8 | row << 16;
+}
+
+std::vector<double> make_ring_constants(double lambda_scale)
+{
+    using C = RingConstants;
+    std::vector<double> out(std::size_t(C::kRows * C::kRow));
+    for (int n = 2; n <= RingLayout::kEdges; ++n) { // interior: LOOP09 3.3
+        double* const row = out.data() + n * C::kRow;
+        row[0] = double(n - 3) / (n + 5);
+        row[1] = 4.0 / (n * (n + 5));
+        double const sigma = loop09_sigma(n);
+        double const edge = 2.0 / n * (1 - sigma * cos_pi(1, n)), face = 2.0 / n * 2 * sigma;
+        double const length = 2.0 / 3 * lambda_scale * loop09_lambda(n);
+        for (int j = 0; j < n; ++j) {
+            double* const each = row + 2 + C::kEach * j;
+            each[0] = edge * cos_pi(2 * j, n);
+            each[1] = edge * sin_pi(2 * j, n);
+            each[2] = face * cos_pi(2 * j + 1, n);
+            each[3] = face * sin_pi(2 * j + 1, n);
+            each[4] = length * cos_pi(2 * j, n);
+            each[5] = length * sin_pi(2 * j, n);
+        }
+    }
+    for (int k = 1; k < RingLayout::kEdges; ++k) { // boundary: LOOP09 4.6
+        double* const row = out.data() + (C::kBoundaryRows + k) * C::kRow;
+        auto const each = [&](int j) { return row + 2 + C::kEach * j; };
+        if (k == 1) { // A and B are the two edges
+            each(0)[4] = each(1)[5] = 1.0 / 3;
+            continue;
+        }
+        double const co = cos_pi(1, k), s = sin_pi(1, k), scale = 1 / (k * (3 + co));
+        row[0] = -4 * s * scale;
+        row[1] = -(1 + 2 * co) * ((1 + co) / s) * scale;
+        for (int j = 0; j <= k; ++j) {
+            if (j > 0 && j < k) each(j)[1] = 4 * sin_pi(j, k) * scale;
+            if (j < k) each(j)[3] = (sin_pi(j, k) + sin_pi(j + 1, k)) * scale;
+            each(j)[4] = cos_pi(j, k) / 3;
+            each(j)[5] = sin_pi(j, k) / 3;
+        }
+    }
+    return out;
+}
+
+std::vector<double> make_ring_cosines()
+{
+    std::vector<double> out(RingConstants::kRows);
+    for (int n = 2; n <= RingLayout::kEdges; ++n) out[std::size_t(n)] = cos_pi(2, n);
+    for (int k = 2; k < RingLayout::kEdges; ++k)
+        out[std::size_t(RingConstants::kBoundaryRows + k)] = cos_pi(1, k);
+    return out;
+}
+
+} // namespace tessemu

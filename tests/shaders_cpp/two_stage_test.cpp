@@ -1,0 +1,223 @@
+// The two-stage form: control points against golden data, through the templates that draw; its
+// costs; what its limits are.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "emu/tally.h"
+#include "pipeline/catmull_clark.h"
+#include "pipeline/frame.h"
+#include "pipeline/vertex_rings.h"
+#include "shaders_cpp/gregory/sector_hull_shader.h"
+#include "tests/support/files.h"
+#include "tests/support/stencil_patch.h"
+
+#include <gtest/gtest.h>
+
+namespace tessemu {
+namespace {
+
+using Json = nlohmann::json;
+
+// The vertex shader's vectors of every vertex.
+template <class F> class Vertices {
+public:
+    explicit Vertices(Topology const& topology) : rings_(topology)
+    {
+        ControlMesh const& mesh = topology.mesh();
+        std::vector<F> constants;
+        for (double c : make_ring_constants(1)) constants.push_back(F(c));
+        RingVertexShader<F> vs;
+        vs.rings = {rings_.rings, 0, "rings"};
+        vs.entries = {rings_.entries, 1, "entries"};
+        vs.positions = Texture2D(rings_.positions, RingVertexShader<F>::kTextureWidth,
+                                 rings_.height, 2, "positions");
+        vs.constants = {constants, 3, "constants"};
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+            auto const& x = mesh.positions[v];
+            RingVertex<F> const out = vs.template operator()<F>(
+                VertexInput<F>{std::int32_t(v)},
+                ControlVertex<F>{{F(x.x), F(x.y), F(x.z)}});
+            for_each_scalar(out, [&](F s) { all_.push_back(s); });
+        }
+    }
+    F const* of(std::uint32_t v) const { return all_.data() + std::size_t(v) * kScalars; }
+    static constexpr std::size_t kScalars = 3 * RingLayout::kVectors;
+
+private:
+    VertexRings rings_;
+    std::vector<F> all_;
+};
+
+double error(float3<float> const& p, Json const& expected)
+{
+    return std::max({std::abs(double(p.x) - double(expected[0])),
+                     std::abs(double(p.y) - double(expected[1])),
+                     std::abs(double(p.z) - double(expected[2]))});
+}
+double error(float3<double> const& p, Json const& expected)
+{
+    return std::max({std::abs(p.x - double(expected[0])), std::abs(p.y - double(expected[1])),
+                     std::abs(p.z - double(expected[2]))});
+}
+
+template <class F, TessellatorDomain kDomain>
+void check_face(Topology const& topology, Vertices<F> const& vertices, Json const& expected,
+                std::string const& mesh_name)
+{
+    constexpr int N = kDomain == TessellatorDomain::Quad ? 4 : 3;
+    std::uint32_t const f = expected["face"];
+    ControlMesh const& mesh = topology.mesh();
+    std::vector<F> input, cosines;
+    std::vector<std::uint32_t> offsets, edges{0};
+    for (std::uint32_t i = 0; i < std::uint32_t(N); ++i) {
+        std::uint32_t const v = mesh.face(f)[i];
+        input.insert(input.end(), vertices.of(v), vertices.of(v) + Vertices<F>::kScalars);
+        offsets.push_back(corner_offsets(topology, mesh.face_start[f] + i));
+    }
+    for (double c : make_ring_cosines()) cosines.push_back(F(c));
+    SectorHullShader<kDomain, 5, F> hs;
+    hs.offsets = {offsets, 0, "offsets"};
+    hs.edges = {edges, 1, "edges"};
+    hs.cosines = {cosines, 2, "cosines"};
+    ControlPoints<RingVertex<F>> const in(input.data(), N);
+    // Bounds. double: 1e-12, as the golden data were compared. float, u = 2^-24, L the largest
+    // coordinate: m_j and c_j err by 5 u L. The weights of A and B sum to at most 2 + 4 sigma < 4 in
+    // absolute value, and 15 terms add 30 roundings: 4 (5 + 30) u L; e adds 2/3 lambda (|A| + |B|)
+    // < 0.9 of that twice and p's 40 u L; r is 2 differences of m and c: 20 u L. A face point
+    // weighs p, two e and r by at most 1, 6/3, 2/3, 1/3.
+    double largest = 0;
+    for (auto const& x : mesh.positions)
+        for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(double(x[k])));
+    double const unit = std::ldexp(1, -24) * largest, e_bound = (40 + 2 * 0.9 * 140) * unit;
+    double const bound = sizeof(F) == 8 ? 1e-12 : e_bound * (1 + 2 + 2.0 / 3) + 20 * unit;
+    char const* const kinds[] = {"p", "e_plus", "e_minus", "f_plus", "f_minus"};
+    for (int i = 0; i < N; ++i) {
+        SectorOf<5, F> const s = hs.template control_point<F>({0}, in, i);
+        for (std::size_t k = 0; k < 5; ++k)
+            ASSERT_LE(error(s.vectors[k], expected[kinds[k]][std::size_t(i)]), bound)
+                << mesh_name << " face " << f << " " << kinds[k] << i;
+    }
+}
+
+template <class F> class TwoStageOn : public testing::Test {
+};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(TwoStageOn, Scalars);
+
+TYPED_TEST(TwoStageOn, ControlPointsAgreeWithGoldenData)
+{
+    using F = TypeParam;
+    std::size_t faces = 0;
+    for (char const* name : {"torus_regular", "cube", "l_shape", "trapezohedron6", "trapezohedron9",
+                             "tetrahedron", "icosahedron", "bipyramid8", "antiprism7", "prism3",
+                             "house", "open_grid", "open_mixed", "open_fan5"}) {
+        Json const j =
+            Json::parse(test::read_text(test::golden(std::string("loop09/") + name + ".json")));
+        ControlMesh const mesh = test::mesh_from(j);
+        Topology const topology(mesh);
+        Vertices<F> const vertices(topology);
+        for (Json const& g : j["gregory"]) {
+            if (mesh.face(g["face"]).size() == 4)
+                check_face<F, TessellatorDomain::Quad>(topology, vertices, g, name);
+            else
+                check_face<F, TessellatorDomain::Tri>(topology, vertices, g, name);
+            if (testing::Test::HasFatalFailure()) return;
+            ++faces;
+        }
+    }
+    EXPECT_GT(faces, 150u);
+}
+
+// n triangles around a vertex, closed below by another.
+ControlMesh bipyramid(int n)
+{
+    ControlMesh m;
+    m.positions = {{0, 0, 1}, {0, 0, -1}};
+    for (int i = 0; i < n; ++i) {
+        float const t = 4 * float(i) / float(n); // around a square: no cosine needed
+        int const side = int(t);
+        float const x = t - float(side);
+        float const at[4][2] = {{1 - 2 * x, 1}, {-1, 1 - 2 * x}, {2 * x - 1, -1}, {1, 2 * x - 1}};
+        m.positions.emplace_back(at[side][0], at[side][1], 0);
+    }
+    for (int i = 0; i < n; ++i) {
+        auto const a = std::uint32_t(2 + i), b = std::uint32_t(2 + (i + 1) % n);
+        m.add_face(std::vector<std::uint32_t>{0, a, b});
+        m.add_face(std::vector<std::uint32_t>{1, b, a});
+    }
+    return m;
+}
+
+StageStatistics const& stage(DrawStatistics const& s, std::string const& name)
+{
+    for (StageStatistics const& x : s.stages)
+        if (x.stage == name) return x;
+    throw std::runtime_error("no stage " + name);
+}
+
+TEST(TwoStage, TakesValencesUpTo15WhichTheStencilFormRefuses)
+{
+    Technique const& two_stage = find_technique("gregory-two-stage");
+    ControlMesh const coarse = bipyramid(15);
+    Topology const coarse_topology(coarse);
+    // After a Catmull-Clark step quads of valences 15, 4, 3, 4 have 36 inputs.
+    ControlMesh const fine = catmull_clark_step(coarse_topology);
+    Topology const topology(fine);
+    EXPECT_EQ(two_stage.build(topology, {})->patch_counts()[0].patches, 90u);
+    EXPECT_THROW(find_technique("gregory-stencil").build(topology, {}), LimitError);
+    ControlMesh const wide = bipyramid(16);
+    Topology const wide_topology(wide);
+    try {
+        two_stage.build(wide_topology, {});
+        FAIL();
+    } catch (LimitError const& e) {
+        EXPECT_NE(std::string(e.what()).find("edges at vertex 1"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("16"), std::string::npos) << e.what();
+    }
+}
+
+// Sheet section 8: 30n + 6 a vertex with A and B, and 6 for the normal's cross product; 72 a
+// triangle patch and 3 for each of the two field vectors across an edge. All vertices of a bipyramid
+// are interior, two of valence n and n of valence 4.
+TEST(TwoStage, CostsAreThoseOfTheSheet)
+{
+    for (int n : {5, 9, 15}) {
+        ControlMesh const mesh = bipyramid(n);
+        Topology const topology(mesh);
+        auto const patches = find_technique("gregory-two-stage").build(topology, {});
+        FrameSettings settings;
+        settings.vertex_cache = {VertexCacheModel::Kind::Infinite, 0};
+        DrawStatistics const s = visit_surface(*patches, settings, ThreadPool(1), {});
+        auto const N = std::uint64_t(n);
+        StageStatistics const& vs = stage(s, "vertex_shader");
+        EXPECT_EQ(vs.invocations, N + 2); // each vertex once
+        EXPECT_EQ(flops_loop10(vs.flops), 2 * (30 * N + 12) + N * (30 * 4 + 12));
+        EXPECT_EQ(flops_loop10(stage(s, "hull_shader").flops), 2 * N * (72 + 3 * 2 * 3));
+        for (FetchStatistics const& f : vs.fetches) {
+            if (f.resource == "ring_entries") {
+                EXPECT_EQ(f.count, 2 * (2 * N + N * 4));
+            } else if (f.resource == "ring_positions") {
+                EXPECT_EQ(f.count, 2 * N + N * 4); // no quads
+            }
+        }
+    }
+}
+
+TEST(TwoStage, TheVertexCacheDecidesHowOftenTheVertexShaderRuns)
+{
+    ControlMesh const mesh = bipyramid(15);
+    Topology const topology(mesh);
+    auto const patches = find_technique("gregory-two-stage").build(topology, {});
+    auto const runs = [&](VertexCacheModel cache) {
+        FrameSettings settings;
+        settings.vertex_cache = cache;
+        return visit_surface(*patches, settings, ThreadPool(1), {}).pipeline.VSInvocations;
+    };
+    EXPECT_EQ(runs({VertexCacheModel::Kind::Infinite, 0}), 17u);
+    EXPECT_EQ(runs({VertexCacheModel::Kind::None, 0}), 90u);
+    std::uint64_t const fifo = runs({VertexCacheModel::Kind::Fifo, 4});
+    EXPECT_GT(fifo, 17u);
+    EXPECT_LT(fifo, 90u);
+}
+
+} // namespace
+} // namespace tessemu
