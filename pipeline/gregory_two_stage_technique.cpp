@@ -38,9 +38,8 @@ public:
         RingVertexShader<> vs;
         vs.rings = {rings_.rings, 0, "ring_heads"};
         vs.entries = {rings_.entries, 1, "ring_entries"};
-        vs.positions =
-            Texture2D(rings_.positions, RingVertexShader<>::kTextureWidth, rings_.height, 2,
-                      "ring_positions");
+        vs.positions = Texture2D(rings_.positions, RingVertexShader<>::kTextureWidth, rings_.height,
+                                 2, "ring_positions");
         vs.constants = {constants_, 3, "ring_constants"};
         vs.r_scale = float(r_scale_);
         vs.smooth_corners = mesh_.boundary == BoundaryRule::EdgeOnly;
@@ -53,10 +52,11 @@ public:
             GraphicsPipelineDesc desc;
             desc.vertex_shader = vertex;
             desc.hull_shader = hull_program(k, settings);
-            desc.domain_shader = k == kRegularQuad ? projected_domain_program<RegularSectorsDomainShader>(settings)
-                                 : k == kGregoryQuad
-                                     ? projected_domain_program<GregoryQuadSectorsDomainShader>(settings)
-                                     : projected_domain_program<GregoryTriangleSectorsDomainShader>(settings);
+            desc.domain_shader =
+                k == kRegularQuad ? projected_domain_program<RegularSectorsDomainShader>(settings)
+                : k == kGregoryQuad
+                    ? projected_domain_program<GregoryQuadSectorsDomainShader>(settings)
+                    : projected_domain_program<GregoryTriangleSectorsDomainShader>(settings);
             if (settings.pixel_shader) desc.pixel_shader = settings.pixel_shader(kind(k));
             desc.partitioning = settings.partitioning;
             desc.output_primitive = OutputPrimitive::TriangleCw;
@@ -140,13 +140,14 @@ class GregoryTwoStageTechnique final : public Technique {
 public:
     SchemeInfo info() const override
     {
-        return {"gregory-two-stage",
-                "LOOP09",
-                "3, 4.1, 4.2, 4.5, 4.6",
-                "the same patches by a vertex shader over one-rings and a hull shader over sectors; "
-                "valences up to 15",
-                {{"lambda", "multiplies the tangent length lambda(n) of interior vertices", 1},
-                 {"r", "multiplies the transversal vectors r of the face points", 1}}};
+        return {
+            "gregory-two-stage",
+            "LOOP09",
+            "3, 4.1, 4.2, 4.5, 4.6",
+            "the same patches by a vertex shader over one-rings and a hull shader over sectors; "
+            "valences up to 15",
+            {{"lambda", "multiplies the tangent length lambda(n) of interior vertices", 1},
+             {"r", "multiplies the transversal vectors r of the face points", 1}}};
     }
 
     std::unique_ptr<PatchMesh> build(Topology const& topology,

@@ -19,8 +19,8 @@ struct VertexRings {
     explicit VertexRings(Topology const& topology);
 };
 
-/// What a hull shader knows of a corner of a face (figure 8): the ring edges of e+ and e- and the row
-/// of its vertex in RingConstants, as SectorHullShader::offsets has it.
+/// What a hull shader knows of a corner of a face (figure 8): the ring edges of e+ and e- and the
+/// row of its vertex in RingConstants, as SectorHullShader::offsets has it.
 std::uint32_t corner_offsets(Topology const& topology, HalfEdge corner);
 
 /// RingConstants with the paper's lambda(n) times `lambda_scale`; double, to be rounded once.

@@ -15,8 +15,7 @@ namespace tessemu {
 /// \param patch  16 control points, object space; each is fetched once
 /// \returns      position and derivatives along u and v
 /// \cost         156 mul (162 with the cross product)
-template <class T>
-constexpr TangentFrame<T> regular_quad(auto const& patch, T u, T v)
+template <class T> constexpr TangentFrame<T> regular_quad(auto const& patch, T u, T v)
 {
     using L = GregoryLayout<4>;
     Routine<T> const here("regular_quad");

@@ -1,5 +1,5 @@
-// Vertex shader of the two-stage form, LOOP09 section 4.1: from a vertex and its one-ring to all that
-// the patches around it need of the vertex.
+// Vertex shader of the two-stage form, LOOP09 section 4.1: from a vertex and its one-ring to all
+// that the patches around it need of the vertex.
 //
 // Connectivity and positions come from textures (figure 7). A vertex is a pure function of its
 // number, so runs after a cache miss and patches on all sides get the same bits.
@@ -48,11 +48,11 @@ template <class Weight = float> struct RingVertexShader {
     static constexpr std::uint32_t kNone = 0xffffffffu;
 
     Buffer<std::uint32_t> rings;   ///< [vertex][2]: first entry; faces, plus 256 on the boundary
-    Buffer<std::uint32_t> entries; ///< [edge][2]: its far end; the diagonal vertex of the face after
-                                   ///< it, kNone in a triangle
-    Texture2D positions;           ///< vertex i at (i % kTextureWidth, i / kTextureWidth)
-    Buffer<Weight> constants;      ///< RingConstants
-    float r_scale = 1;             ///< multiplies r
+    Buffer<std::uint32_t> entries; ///< [edge][2]: its far end; the diagonal vertex of the face
+                                   ///< after it, kNone in a triangle
+    Texture2D positions;         ///< vertex i at (i % kTextureWidth, i / kTextureWidth)
+    Buffer<Weight> constants;    ///< RingConstants
+    float r_scale = 1;           ///< multiplies r
     bool smooth_corners = false; ///< a boundary vertex with one face is not interpolated
 
     std::vector<ResourceInfo> resources() const
@@ -60,7 +60,8 @@ template <class Weight = float> struct RingVertexShader {
         return {rings.info(), entries.info(), positions.info(), constants.info()};
     }
 
-    /// \cost  interior, n faces: 30n + 6 mul and the normal's 6; reads 2 ring words, 2n entries, n +
+    /// \cost  interior, n faces: 30n + 6 mul and the normal's 6; reads 2 ring words, 2n entries, n
+    /// +
     ///        quads positions, 6n + 2 constants
     template <class T>
     RingVertex<T> operator()(VertexInput<T> const& in, ControlVertex<T> const& stream) const
@@ -96,7 +97,8 @@ template <class Weight = float> struct RingVertexShader {
                 [&]() -> V {
                     Int const diagonal = Int(load<T>(entries, first + Int(2 * j + 1)));
                     auto const quad = diagonal != Int(-1);
-                    V const x = when(quad, [&]() -> V { return position(diagonal); }, zero);
+                    V const x = when(
+                        quad, [&]() -> V { return position(diagonal); }, zero);
                     V const next = select(Int(j + 1) == edges, d[0], d[j + 1]);
                     V const sum = v + d[j] + next + x;
                     return select(quad, T(0.25), T(1.0 / 3)) * sum;
@@ -235,8 +237,8 @@ private:
                     int const before = j == 0 ? 0 : j - 1;
                     V const m = middle(ring.d[j]), m_next = middle(ring.d[j + 1]),
                             m_previous = middle(ring.d[before]);
-                    V const inner = third * V(m_next - m_previous) +
-                                    two_thirds * V(ring.c[j] - ring.c[before]);
+                    V const inner =
+                        third * V(m_next - m_previous) + two_thirds * V(ring.c[j] - ring.c[before]);
                     V const first = two_thirds * V(m_next - v) + four_thirds * V(ring.c[j] - m);
                     V const last =
                         two_thirds * V(v - m_previous) + four_thirds * V(m - ring.c[before]);

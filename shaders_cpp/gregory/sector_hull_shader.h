@@ -33,9 +33,9 @@ template <TessellatorDomain kDomain_, int kVectors, class Weight = float> struct
 
     Buffer<std::uint32_t> offsets; ///< [patch][corner]: edge of e+ | edge of e- << 8 | row of its
                                    ///< vertex in RingConstants << 16
-    Buffer<std::uint32_t> edges; ///< [patch]: bit k: edge k runs against its canonical direction;
-                                 ///< bit 8 + k: it lies on the boundary
-    Buffer<Weight> cosines;      ///< [row of RingConstants]
+    Buffer<std::uint32_t> edges;   ///< [patch]: bit k: edge k runs against its canonical direction;
+                                   ///< bit 8 + k: it lies on the boundary
+    Buffer<Weight> cosines;        ///< [row of RingConstants]
     std::array<float, 6> factors{1, 1, 1, 1, 1, 1}; ///< uniform tess factors
 
     int control_points() const { return kSides; }
@@ -108,18 +108,17 @@ template <TessellatorDomain kDomain_, int kVectors, class Weight = float> struct
             [&]() -> V {
                 Corner<T> const at = corner<T>(patch, i);
                 Int const j = select(far, at.minus, at.plus);
-                return when(
-                    (which == Int(1)) | (which == Int(2)),
-                    [&]() -> V { return in.vector(i, Int(RingLayout::kR) + j); },
-                    when(
-                        (which == Int(0)) | (which == Int(3)),
-                        [&]() -> V {
-                            Int const up = select(j + Int(1) == at.n, Int(0), j + Int(1));
-                            Int const down = select(j == Int(0), at.n - Int(1), j - Int(1));
-                            return T(1.5) * V(in.vector(i, Int(RingLayout::kE) + up) -
-                                              in.vector(i, Int(RingLayout::kE) + down));
-                        },
-                        zero));
+                return when((which == Int(1)) | (which == Int(2)),
+                            [&]() -> V { return in.vector(i, Int(RingLayout::kR) + j); },
+                            when((which == Int(0)) | (which == Int(3)),
+                                 [&]() -> V {
+                                     Int const up = select(j + Int(1) == at.n, Int(0), j + Int(1));
+                                     Int const down =
+                                         select(j == Int(0), at.n - Int(1), j - Int(1));
+                                     return T(1.5) * V(in.vector(i, Int(RingLayout::kE) + up) -
+                                                       in.vector(i, Int(RingLayout::kE) + down));
+                                 },
+                                 zero));
             },
             value);
         if constexpr (kVectors == 5) {
@@ -128,13 +127,12 @@ template <TessellatorDomain kDomain_, int kVectors, class Weight = float> struct
                 alone,
                 [&]() -> V {
                     auto const end = (which == Int(0)) | (which == Int(3));
-                    Int const from = select(end, Int(SectorLayout::kP),
-                                            select(far, Int(SectorLayout::kEMinus),
-                                                   Int(SectorLayout::kEPlus)));
-                    Int const to =
-                        select(end, select(far, Int(SectorLayout::kEPlus),
-                                           Int(SectorLayout::kEMinus)),
-                               select(far, Int(SectorLayout::kFMinus), Int(SectorLayout::kFPlus)));
+                    Int const from =
+                        select(end, Int(SectorLayout::kP),
+                               select(far, Int(SectorLayout::kEMinus), Int(SectorLayout::kEPlus)));
+                    Int const to = select(
+                        end, select(far, Int(SectorLayout::kEPlus), Int(SectorLayout::kEMinus)),
+                        select(far, Int(SectorLayout::kFMinus), Int(SectorLayout::kFPlus)));
                     T const scale = select(end, T(3), T(kSides == 4 ? 3 : 4));
                     V const inward = scale * V(sectors.vector(i, to) - sectors.vector(i, from));
                     return select(far, -inward, inward);

@@ -97,20 +97,21 @@ TEST_P(SchemeOn, SharedEdgesHaveEqualBitsUnderEveryContraction)
     TESSEMU_NEEDS_SHARED(file);
     expect_closed(test::shared(file).string(), scheme);
 }
-INSTANTIATE_TEST_SUITE_P(
-    Models, SchemeOn,
-    testing::Values(SchemeAndModel{"gregory-stencil", "bigguy"},
-                    SchemeAndModel{"gregory-stencil", "monsterfrog"},
-                    SchemeAndModel{"gregory-stencil", "suzanne"}, SchemeAndModel{"acc", "bigguy"},
-                    SchemeAndModel{"acc", "monsterfrog"},
-                    SchemeAndModel{"gregory-two-stage", "bigguy"},
-                    SchemeAndModel{"gregory-two-stage", "monsterfrog"},
-                    SchemeAndModel{"gregory-two-stage", "suzanne"}),
-    [](auto const& test) {
-        std::string name = std::string(test.param.first) + "_" + test.param.second;
-        std::replace(name.begin(), name.end(), '-', '_');
-        return name;
-    });
+INSTANTIATE_TEST_SUITE_P(Models, SchemeOn,
+                         testing::Values(SchemeAndModel{"gregory-stencil", "bigguy"},
+                                         SchemeAndModel{"gregory-stencil", "monsterfrog"},
+                                         SchemeAndModel{"gregory-stencil", "suzanne"},
+                                         SchemeAndModel{"acc", "bigguy"},
+                                         SchemeAndModel{"acc", "monsterfrog"},
+                                         SchemeAndModel{"gregory-two-stage", "bigguy"},
+                                         SchemeAndModel{"gregory-two-stage", "monsterfrog"},
+                                         SchemeAndModel{"gregory-two-stage", "suzanne"}),
+                         [](auto const& test) {
+                             std::string name =
+                                 std::string(test.param.first) + "_" + test.param.second;
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
 
 enum class EdgeRule { LeftToRight, MirrorPairs };
 

@@ -34,8 +34,7 @@ public:
         for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
             auto const& x = mesh.positions[v];
             RingVertex<F> const out = vs.template operator()<F>(
-                VertexInput<F>{std::int32_t(v)},
-                ControlVertex<F>{{F(x.x), F(x.y), F(x.z)}});
+                VertexInput<F>{std::int32_t(v)}, ControlVertex<F>{{F(x.x), F(x.y), F(x.z)}});
             for_each_scalar(out, [&](F s) { all_.push_back(s); });
         }
     }
@@ -80,9 +79,9 @@ void check_face(Topology const& topology, Vertices<F> const& vertices, Json cons
     hs.cosines = {cosines, 2, "cosines"};
     ControlPoints<RingVertex<F>> const in(input.data(), N);
     // Bounds. double: 1e-12, as the golden data were compared. float, u = 2^-24, L the largest
-    // coordinate: m_j and c_j err by 5 u L. The weights of A and B sum to at most 2 + 4 sigma < 4 in
-    // absolute value, and 15 terms add 30 roundings: 4 (5 + 30) u L; e adds 2/3 lambda (|A| + |B|)
-    // < 0.9 of that twice and p's 40 u L; r is 2 differences of m and c: 20 u L. A face point
+    // coordinate: m_j and c_j err by 5 u L. The weights of A and B sum to at most 2 + 4 sigma < 4
+    // in absolute value, and 15 terms add 30 roundings: 4 (5 + 30) u L; e adds 2/3 lambda (|A| +
+    // |B|) < 0.9 of that twice and p's 40 u L; r is 2 differences of m and c: 20 u L. A face point
     // weighs p, two e and r by at most 1, 6/3, 2/3, 1/3.
     double largest = 0;
     for (auto const& x : mesh.positions)
@@ -176,8 +175,8 @@ TEST(TwoStage, TakesValencesUpTo15WhichTheStencilFormRefuses)
 }
 
 // Sheet section 8: 30n + 6 a vertex with A and B, and 6 for the normal's cross product; 72 a
-// triangle patch and 3 for each of the two field vectors across an edge. All vertices of a bipyramid
-// are interior, two of valence n and n of valence 4.
+// triangle patch and 3 for each of the two field vectors across an edge. All vertices of a
+// bipyramid are interior, two of valence n and n of valence 4.
 TEST(TwoStage, CostsAreThoseOfTheSheet)
 {
     for (int n : {5, 9, 15}) {
