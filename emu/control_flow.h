@@ -59,7 +59,7 @@ template <class M, class Work, class V> constexpr V when(M mask, Work&& work, V 
     using T = scalar_of<V>;
     if constexpr (ScalarTraits<T>::kTally) {
         return mask ? V(work()) : otherwise;
-    } else if constexpr (std::same_as<M, bool>) {
+    } else if constexpr (std::integral<M>) { // bool & bool is an int
         SiteScope<T> const here;
         return mask ? V(work()) : otherwise;
     } else {
@@ -83,7 +83,7 @@ template <class M, class Work> void masked_work(M mask, Work&& work)
 template <class T, class M, class Work> constexpr void when(M mask, Work&& work)
 {
     SiteScope<T> const here;
-    if constexpr (std::same_as<M, bool>) {
+    if constexpr (std::integral<M>) {
         if (mask) work();
     } else {
         detail::masked_work(mask, work);

@@ -5,6 +5,7 @@
 #include "pipeline/catmull_clark.h"
 #include "pipeline/gregory_stencil_technique.h"
 #include "pipeline/gregory_two_stage_technique.h"
+#include "pipeline/pm_technique.h"
 
 #include <algorithm>
 
@@ -17,6 +18,7 @@ std::vector<std::unique_ptr<Technique>> const& techniques()
         t.push_back(make_gregory_stencil_technique());
         t.push_back(make_gregory_two_stage_technique());
         t.push_back(make_acc_technique());
+        t.push_back(make_pm_technique());
         return t;
     }();
     return all;

@@ -10,8 +10,8 @@ namespace tessemu {
 VertexRings::VertexRings(Topology const& topology)
 {
     ControlMesh const& mesh = topology.mesh();
-    constexpr std::uint32_t kNone = RingVertexShader<>::kNone;
-    constexpr auto kWidth = std::size_t(RingVertexShader<>::kTextureWidth);
+    constexpr std::uint32_t kNone = RingTextures::kNone;
+    constexpr auto kWidth = std::size_t(RingTextures::kTextureWidth);
     std::size_t const vertices = mesh.positions.size();
     rings.reserve(2 * vertices);
     for (std::uint32_t v = 0; v < vertices; ++v) {
@@ -46,14 +46,14 @@ std::uint32_t corner_offsets(Topology const& topology, HalfEdge corner)
     bool const boundary = topology.is_boundary(v);
     std::uint32_t const plus = topology.ring_index(corner);
     std::uint32_t const minus = boundary ? plus + 1 : (plus + 1) % faces;
-    std::uint32_t const row = faces + (boundary ? std::uint32_t(RingConstants::kBoundaryRows) : 0);
+    std::uint32_t const row = faces + (boundary ? std::uint32_t(RingRows::kBoundary) : 0);
     return plus | minus << 8 | row << 16;
 }
 
 std::vector<double> make_ring_constants(double lambda_scale)
 {
     using C = RingConstants;
-    std::vector<double> out(std::size_t(C::kRows * C::kRow));
+    std::vector<double> out(std::size_t(RingRows::kCount * C::kRow));
     for (int n = 2; n <= RingLayout::kEdges; ++n) { // interior: LOOP09 3.3
         double* const row = out.data() + n * C::kRow;
         row[0] = double(n - 3) / (n + 5);
@@ -72,7 +72,7 @@ std::vector<double> make_ring_constants(double lambda_scale)
         }
     }
     for (int k = 1; k < RingLayout::kEdges; ++k) { // boundary: LOOP09 4.6
-        double* const row = out.data() + (C::kBoundaryRows + k) * C::kRow;
+        double* const row = out.data() + (RingRows::kBoundary + k) * C::kRow;
         auto const each = [&](int j) { return row + 2 + C::kEach * j; };
         if (k == 1) { // A and B are the two edges
             each(0)[4] = each(1)[5] = 1.0 / 3;
@@ -91,12 +91,15 @@ std::vector<double> make_ring_constants(double lambda_scale)
     return out;
 }
 
-std::vector<double> make_ring_cosines()
+std::vector<double> make_ring_angles()
 {
-    std::vector<double> out(RingConstants::kRows);
-    for (int n = 2; n <= RingLayout::kEdges; ++n) out[std::size_t(n)] = cos_pi(2, n);
+    std::vector<double> out(2 * RingRows::kCount);
+    for (int n = 2; n <= RingLayout::kEdges; ++n) {
+        out[std::size_t(2 * n)] = cos_pi(2, n);
+        out[std::size_t(2 * n + 1)] = sin_pi(2, n);
+    }
     for (int k = 2; k < RingLayout::kEdges; ++k)
-        out[std::size_t(RingConstants::kBoundaryRows + k)] = cos_pi(1, k);
+        out[std::size_t(2 * (RingRows::kBoundary + k))] = cos_pi(1, k);
     return out;
 }
 

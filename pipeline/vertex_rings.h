@@ -8,7 +8,7 @@
 
 namespace tessemu {
 
-/// Memory behind RingVertexShader's buffers.
+/// Memory behind RingTextures.
 struct VertexRings {
     std::vector<std::uint32_t> rings, entries;
     std::vector<float> positions; ///< four floats a texel
@@ -20,12 +20,13 @@ struct VertexRings {
 };
 
 /// What a hull shader knows of a corner of a face (figure 8): the ring edges of e+ and e- and the
-/// row of its vertex in RingConstants, as SectorHullShader::offsets has it.
+/// row of its vertex in the ring tables, as SectorTables::offsets has it.
 std::uint32_t corner_offsets(Topology const& topology, HalfEdge corner);
 
 /// RingConstants with the paper's lambda(n) times `lambda_scale`; double, to be rounded once.
 std::vector<double> make_ring_constants(double lambda_scale);
-/// The cosine of each row's vertices: cos(2pi/n); boundary cos(pi/k), a corner 0.
-std::vector<double> make_ring_cosines();
+/// SectorTables::angles: each row's cosine, cos(2pi/n), boundary cos(pi/k), a corner 0; and
+/// sin(2pi/n).
+std::vector<double> make_ring_angles();
 
 } // namespace tessemu

@@ -18,6 +18,8 @@ def pictures():
         run("draw", "jug", "--tess", "24", "--size", "640x640", *options, "-o", str(OUT / name))
     run("draw", "saddle_star", "--scheme", "acc", "--view", "patches", "--tess", "12", "--size", "640x420",
         "-o", str(OUT / "saddle_star_acc.png"))
+    run("draw", "spindle", "--scheme", "pm", "--view", "patches", "--tess", "12", "--size", "640x420",
+        "-o", str(OUT / "spindle_pm.png"))
     for view in ("wire", "coverage"):
         run("draw", "jug", "--tess", "5", "--view", view, "--size", "480x480", "--samples", "4",
             "-o", str(OUT / f"jug_{view}.png"))

@@ -96,6 +96,8 @@ template <class T> constexpr float3<T> unit_or_zero(float3<T> const& v)
 ///         template <class T> using ControlPoint = ...;
 ///         template <class T> static TangentFrame<T> evaluate(
 ///             ControlPoints<ControlPoint<T>> const&, DomainInput<T> const&, bool true_normals);
+///             // or (ControlPoints<...> const&, ControlPoints<EdgeRegister<T>> const&,
+///             //     DomainInput<T> const&), where the scheme keeps registers behind the corners'
 ///         template <class T> static EdgeCurve<T> edge(
 ///             ControlPoints<ControlPoint<T>> const&, int k);   // from corner k to corner k+1
 ///         template <class T> static float3<T> corner(
@@ -138,6 +140,16 @@ template <class Inside> struct WatertightPatch {
 
 private:
     template <class T>
+    constexpr TangentFrame<T> evaluate(DomainInput<T> const& in, Patch<T> const& patch,
+                                       Registers<T> const& registers) const
+    {
+        if constexpr (requires { Inside::template evaluate<T>(patch, registers, in); })
+            return Inside::template evaluate<T>(patch, registers, in);
+        else
+            return Inside::template evaluate<T>(patch, in, true_normals);
+    }
+
+    template <class T>
     constexpr SurfacePoint<T> inside_or_boundary(DomainInput<T> const& in, Patch<T> const& patch,
                                                  Registers<T> const& registers,
                                                  mask_of<T> const (&on)[kSides],
@@ -149,7 +161,7 @@ private:
         SurfacePoint<T> const inside = when(
             !boundary,
             [&] {
-                TangentFrame<T> const frame = Inside::template evaluate<T>(patch, in, true_normals);
+                TangentFrame<T> const frame = evaluate<T>(in, patch, registers);
                 return SurfacePoint<T>{frame.position, cross(frame.du, frame.dv)};
             },
             SurfacePoint<T>{zero, zero});

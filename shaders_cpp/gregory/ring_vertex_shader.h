@@ -2,33 +2,17 @@
 // that the patches around it need of the vertex.
 //
 // Connectivity and positions come from textures (figure 7). A vertex is a pure function of its
-// number, so runs after a cache miss and patches on all sides get the same bits.
+// number, so runs after a cache miss and patches on all sides get the same bits. The vectors of a
+// vertex: p, the normal A x B, edge points e_j, transversal vectors r_j (sheet section 2).
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "emu/texture.h"
-#include "emu/vertex_shader.h"
-#include "shaders_cpp/records.h"
+#include "shaders_cpp/ring_vertex.h"
 
 namespace tessemu {
 
-/// Vectors of a vertex: limit position, normal direction, edge points e_j, transversal vectors r_j
-/// (sheet section 2). 32 output registers hold 15 edges: valence 15, or 14 faces on the boundary.
-struct RingLayout {
-    static constexpr int kEdges = 15;
-    static constexpr int kVectors = 2 + 2 * kEdges;
-    static constexpr int kP = 0, kNormal = 1, kE = 2, kR = 2 + kEdges;
-};
-
-template <class T> struct RingVertex {
-    static constexpr int kVectors = RingLayout::kVectors;
-    std::array<float3<T>, kVectors> vectors;
-    static constexpr auto signature() { return std::tuple{&RingVertex::vectors}; }
-};
-
-/// Numbers that depend on a vertex's valence alone: a row for each interior n, then one for each
-/// number k of boundary faces.
+/// Numbers that depend on a vertex's valence alone, by RingRows.
 ///
 /// Interior: p = row[0] v + row[1] sum (m_j + c_j), and for each j six: the weights of m_j in A and
 /// in B, of c_j in A and in B, and those of A and B in e_j - p. Boundary: row[0], row[1] are the
@@ -36,21 +20,13 @@ template <class T> struct RingVertex {
 struct RingConstants {
     static constexpr int kEach = 6;
     static constexpr int kRow = 2 + kEach * RingLayout::kEdges;
-    static constexpr int kBoundaryRows = 16; ///< first row of the boundary
-    static constexpr int kRows = 32;
 };
 
 /// \tparam Weight  float; double in tests of the formulas
-template <class Weight = float> struct RingVertexShader {
+template <class Weight = float> struct RingVertexShader : RingTextures {
     template <class T> using Input = ControlVertex<T>;
     template <class T> using Output = RingVertex<T>;
-    static constexpr int kTextureWidth = 1024;
-    static constexpr std::uint32_t kNone = 0xffffffffu;
 
-    Buffer<std::uint32_t> rings;   ///< [vertex][2]: first entry; faces, plus 256 on the boundary
-    Buffer<std::uint32_t> entries; ///< [edge][2]: its far end; the diagonal vertex of the face
-                                   ///< after it, kNone in a triangle
-    Texture2D positions;         ///< vertex i at (i % kTextureWidth, i / kTextureWidth)
     Buffer<Weight> constants;    ///< RingConstants
     float r_scale = 1;           ///< multiplies r
     bool smooth_corners = false; ///< a boundary vertex with one face is not interpolated
@@ -70,24 +46,13 @@ template <class Weight = float> struct RingVertexShader {
         using V = float3<T>;
         constexpr int kEdges = RingLayout::kEdges;
         V const v = stream.position, zero(T(0), T(0), T(0));
-        Int const head = in.vertex_id << Int(1);
-        Int const first = Int(load<T>(rings, head)) << Int(1);
-        Int const word = Int(load<T>(rings, head + Int(1)));
-        Int const n = word & Int(255);
-        auto const boundary = (word & Int(256)) != Int(0);
-        Int const edges = n + (word >> Int(8));
-
-        auto const position = [&](Int id) -> V {
-            float4<T> const p =
-                load<T>(positions, Int(id & Int(kTextureWidth - 1)), Int(id >> Int(10)));
-            return {p.x, p.y, p.z};
-        };
+        RingTextures::Ring<T> const at = RingTextures::ring<T>(in.vertex_id);
+        Int const n = at.n, edges = at.edges;
         // Far ends, and centroids c_j of the faces; `end` is the last far end.
         V d[kEdges + 1], c[kEdges + 1], end = zero;
         for (int j : loop<T>(kEdges)) {
             d[j] = when(
-                Int(j) < edges,
-                [&]() -> V { return position(Int(load<T>(entries, first + Int(2 * j)))); }, zero);
+                Int(j) < edges, [&]() -> V { return far_end<T>(at, j); }, zero);
             end = select(Int(j) == edges - Int(1), d[j], end);
         }
         d[kEdges] = zero;
@@ -95,10 +60,10 @@ template <class Weight = float> struct RingVertexShader {
             c[j] = when(
                 Int(j) < n,
                 [&]() -> V {
-                    Int const diagonal = Int(load<T>(entries, first + Int(2 * j + 1)));
-                    auto const quad = diagonal != Int(-1);
+                    Int const across = diagonal<T>(at, j);
+                    auto const quad = across != Int(-1);
                     V const x = when(
-                        quad, [&]() -> V { return position(diagonal); }, zero);
+                        quad, [&]() -> V { return position<T>(across); }, zero);
                     V const next = select(Int(j + 1) == edges, d[0], d[j + 1]);
                     V const sum = v + d[j] + next + x;
                     return select(quad, T(0.25), T(1.0 / 3)) * sum;
@@ -106,19 +71,19 @@ template <class Weight = float> struct RingVertexShader {
                 zero);
         c[kEdges] = zero;
 
-        Int const row = (n + select(boundary, Int(RingConstants::kBoundaryRows), Int(0))) *
-                        Int(RingConstants::kRow);
-        Ring<T> const ring{v, n, edges, row, d, c, end};
+        Int const row =
+            (n + select(at.boundary, Int(RingRows::kBoundary), Int(0))) * Int(RingConstants::kRow);
+        Faces<T> const ring{v, n, edges, row, d, c, end};
         RingVertex<T> none;
         none.vectors.fill(zero);
         RingVertex<T> const inside = when(
-            !boundary, [&] { return interior_vertex<T>(ring, none); }, none);
+            !at.boundary, [&] { return interior_vertex<T>(ring, none); }, none);
         return when(
-            boundary, [&] { return boundary_vertex<T>(ring, none); }, inside);
+            at.boundary, [&] { return boundary_vertex<T>(ring, none); }, inside);
     }
 
 private:
-    template <class T> struct Ring {
+    template <class T> struct Faces {
         float3<T> const& v;
         int_of<T> n, edges, row;
         float3<T> const (&d)[RingLayout::kEdges + 1];
@@ -129,18 +94,18 @@ private:
         float3<T> A, B, S;
         static constexpr auto signature() { return std::tuple{&Sums::A, &Sums::B, &Sums::S}; }
     };
-    template <class T> T constant(Ring<T> const& ring, int i) const
+    template <class T> T constant(Faces<T> const& ring, int i) const
     {
         return load<T>(constants, ring.row + int_of<T>(i));
     }
-    template <class T> T of_edge(Ring<T> const& ring, int j, int k) const
+    template <class T> T of_edge(Faces<T> const& ring, int j, int k) const
     {
         return constant<T>(ring, 2 + RingConstants::kEach * j + k);
     }
 
     // LOOP09 3.3, 3.4; q_j = cos(2pi j/n) A + sin(2pi j/n) B.
     template <class T>
-    RingVertex<T> interior_vertex(Ring<T> const& ring, RingVertex<T> const& none) const
+    RingVertex<T> interior_vertex(Faces<T> const& ring, RingVertex<T> const& none) const
     {
         using Int = int_of<T>;
         using V = float3<T>;
@@ -194,7 +159,7 @@ private:
 
     // LOOP09 4.6 (sheet section 4).
     template <class T>
-    RingVertex<T> boundary_vertex(Ring<T> const& ring, RingVertex<T> const& none) const
+    RingVertex<T> boundary_vertex(Faces<T> const& ring, RingVertex<T> const& none) const
     {
         using Int = int_of<T>;
         using V = float3<T>;

@@ -2,12 +2,12 @@
 // costs; what its limits are.
 //
 // SPDX-License-Identifier: Apache-2.0
-#include "emu/tally.h"
 #include "pipeline/catmull_clark.h"
 #include "pipeline/frame.h"
-#include "pipeline/vertex_rings.h"
+#include "shaders_cpp/gregory/ring_vertex_shader.h"
 #include "shaders_cpp/gregory/sector_hull_shader.h"
 #include "tests/support/files.h"
+#include "tests/support/ring_vertices.h"
 #include "tests/support/stencil_patch.h"
 
 #include <gtest/gtest.h>
@@ -17,46 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// The vertex shader's vectors of every vertex.
-template <class F> class Vertices {
-public:
-    explicit Vertices(Topology const& topology) : rings_(topology)
-    {
-        ControlMesh const& mesh = topology.mesh();
-        std::vector<F> constants;
-        for (double c : make_ring_constants(1)) constants.push_back(F(c));
-        RingVertexShader<F> vs;
-        vs.rings = {rings_.rings, 0, "rings"};
-        vs.entries = {rings_.entries, 1, "entries"};
-        vs.positions = Texture2D(rings_.positions, RingVertexShader<F>::kTextureWidth,
-                                 rings_.height, 2, "positions");
-        vs.constants = {constants, 3, "constants"};
-        for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-            auto const& x = mesh.positions[v];
-            RingVertex<F> const out = vs.template operator()<F>(
-                VertexInput<F>{std::int32_t(v)}, ControlVertex<F>{{F(x.x), F(x.y), F(x.z)}});
-            for_each_scalar(out, [&](F s) { all_.push_back(s); });
-        }
-    }
-    F const* of(std::uint32_t v) const { return all_.data() + std::size_t(v) * kScalars; }
-    static constexpr std::size_t kScalars = 3 * RingLayout::kVectors;
-
-private:
-    VertexRings rings_;
-    std::vector<F> all_;
-};
-
-double error(float3<float> const& p, Json const& expected)
-{
-    return std::max({std::abs(double(p.x) - double(expected[0])),
-                     std::abs(double(p.y) - double(expected[1])),
-                     std::abs(double(p.z) - double(expected[2]))});
-}
-double error(float3<double> const& p, Json const& expected)
-{
-    return std::max({std::abs(p.x - double(expected[0])), std::abs(p.y - double(expected[1])),
-                     std::abs(p.z - double(expected[2]))});
-}
+template <class F> using Vertices = test::RingVertices<F, RingVertexShader<F>>;
 
 template <class F, TessellatorDomain kDomain>
 void check_face(Topology const& topology, Vertices<F> const& vertices, Json const& expected,
@@ -65,18 +26,9 @@ void check_face(Topology const& topology, Vertices<F> const& vertices, Json cons
     constexpr int N = kDomain == TessellatorDomain::Quad ? 4 : 3;
     std::uint32_t const f = expected["face"];
     ControlMesh const& mesh = topology.mesh();
-    std::vector<F> input, cosines;
-    std::vector<std::uint32_t> offsets, edges{0};
-    for (std::uint32_t i = 0; i < std::uint32_t(N); ++i) {
-        std::uint32_t const v = mesh.face(f)[i];
-        input.insert(input.end(), vertices.of(v), vertices.of(v) + Vertices<F>::kScalars);
-        offsets.push_back(corner_offsets(topology, mesh.face_start[f] + i));
-    }
-    for (double c : make_ring_cosines()) cosines.push_back(F(c));
-    SectorHullShader<kDomain, 5, F> hs;
-    hs.offsets = {offsets, 0, "offsets"};
-    hs.edges = {edges, 1, "edges"};
-    hs.cosines = {cosines, 2, "cosines"};
+    std::vector<F> const input = vertices.of_face(mesh, f);
+    test::FaceTables<F> const tables(topology, f);
+    auto const hs = tables.template bind<SectorHullShader<kDomain, 5, F>>();
     ControlPoints<RingVertex<F>> const in(input.data(), N);
     // Bounds. double: 1e-12, as the golden data were compared. float, u = 2^-24, L the largest
     // coordinate: m_j and c_j err by 5 u L. The weights of A and B sum to at most 2 + 4 sigma < 4
@@ -92,7 +44,7 @@ void check_face(Topology const& topology, Vertices<F> const& vertices, Json cons
     for (int i = 0; i < N; ++i) {
         SectorOf<5, F> const s = hs.template control_point<F>({0}, in, i);
         for (std::size_t k = 0; k < 5; ++k)
-            ASSERT_LE(error(s.vectors[k], expected[kinds[k]][std::size_t(i)]), bound)
+            ASSERT_LE(test::error(s.vectors[k], expected[kinds[k]][std::size_t(i)]), bound)
                 << mesh_name << " face " << f << " " << kinds[k] << i;
     }
 }
@@ -113,7 +65,7 @@ TYPED_TEST(TwoStageOn, ControlPointsAgreeWithGoldenData)
             Json::parse(test::read_text(test::golden(std::string("loop09/") + name + ".json")));
         ControlMesh const mesh = test::mesh_from(j);
         Topology const topology(mesh);
-        Vertices<F> const vertices(topology);
+        Vertices<F> const vertices(topology, make_ring_constants(1));
         for (Json const& g : j["gregory"]) {
             if (mesh.face(g["face"]).size() == 4)
                 check_face<F, TessellatorDomain::Quad>(topology, vertices, g, name);

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/ring_patch_mesh.h"
+
+namespace tessemu {
+
+namespace {
+
+// Patches of one kind: an index buffer of their corners, and the offsets texture (figure 8).
+struct Group {
+    std::vector<PatchOrigin> patches;
+    std::vector<std::uint32_t> indices, offsets, edges;
+};
+
+class RingPatchMesh final : public PatchMesh {
+public:
+    RingPatchMesh(Topology const& topology, RingScheme scheme)
+        : mesh_(topology.mesh()),
+          scheme_(std::move(scheme)),
+          rings_(topology),
+          groups_(scheme_.kinds.size())
+    {
+        for (double c : make_ring_angles()) angles_.push_back(float(c));
+        std::vector<char> const hidden = hidden_faces(topology, warnings_);
+        for (std::uint32_t f = 0; f < mesh_.faces(); ++f)
+            if (!hidden[f]) add_patch(topology, f);
+        warn_of_tags(mesh_, warnings_);
+    }
+
+    std::vector<DrawPass> passes(PassSettings const& settings) const override
+    {
+        RingTextures textures;
+        textures.rings = {rings_.rings, 0, "ring_heads"};
+        textures.entries = {rings_.entries, 1, "ring_entries"};
+        textures.positions = Texture2D(rings_.positions, RingTextures::kTextureWidth, rings_.height,
+                                       2, "ring_positions");
+        auto const vertex = scheme_.vertex_program(textures, settings);
+        std::vector<DrawPass> out;
+        for (std::size_t k = 0; k < groups_.size(); ++k) {
+            Group const& g = groups_[k];
+            if (g.patches.empty()) continue;
+            RingKind const& kind = scheme_.kinds[k];
+            GraphicsPipelineDesc desc;
+            desc.vertex_shader = vertex;
+            desc.hull_shader = kind.hull_program({g.offsets, g.edges, angles_}, settings);
+            desc.domain_shader = kind.domain_program(settings);
+            if (settings.pixel_shader) desc.pixel_shader = settings.pixel_shader(kind.kind);
+            desc.partitioning = settings.partitioning;
+            desc.output_primitive = OutputPrimitive::TriangleCw;
+            desc.input_control_points = kind.sides;
+            DrawCall call;
+            call.control_points = kind.sides;
+            call.set_vertices({&mesh_.positions.data()->x, mesh_.positions.size() * 3}, 3);
+            call.indices = std::span<std::uint32_t const>(g.indices);
+            out.push_back({kind.kind, GraphicsPipeline(std::move(desc)), call, g.patches});
+        }
+        return out;
+    }
+
+    std::vector<PatchCount> patch_counts() const override
+    {
+        std::vector<PatchCount> out;
+        for (std::size_t k = 0; k < groups_.size(); ++k)
+            if (std::size_t const n = groups_[k].patches.size())
+                out.push_back(
+                    {scheme_.kinds[k].kind, n, 1, scheme_.kinds[k].sides, scheme_.kinds[k].sides});
+        return out;
+    }
+
+    std::vector<std::string> const& warnings() const override { return warnings_; }
+
+private:
+    void add_patch(Topology const& topology, std::uint32_t f)
+    {
+        auto const face = mesh_.face(f);
+        auto const n = std::uint32_t(face.size());
+        Group& g = groups_[scheme_.kind_of(f)];
+        g.patches.push_back({f, 0, std::uint8_t(n)});
+        g.indices.insert(g.indices.end(), face.begin(), face.end());
+        std::uint32_t bits = 0;
+        for (std::uint32_t i = 0; i < n; ++i) {
+            HalfEdge const h = mesh_.face_start[f] + i;
+            g.offsets.push_back(corner_offsets(topology, h));
+            if (face[i] > face[(i + 1) % n]) bits |= 1u << i;
+            if (topology.twin(h) == Topology::kNone) bits |= 256u << i;
+        }
+        g.edges.push_back(bits);
+    }
+
+    ControlMesh const& mesh_;
+    RingScheme scheme_;
+    VertexRings rings_;
+    std::vector<float> angles_;
+    std::vector<Group> groups_;
+    std::vector<std::string> warnings_;
+};
+
+} // namespace
+
+std::unique_ptr<PatchMesh> make_ring_patch_mesh(Topology const& topology, RingScheme scheme)
+{
+    return std::make_unique<RingPatchMesh>(topology, std::move(scheme));
+}
+
+} // namespace tessemu
