@@ -1,6 +1,7 @@
 // tessemu: the program. Parses, calls the library, prints.
 //
 // SPDX-License-Identifier: Apache-2.0
+#include "analysis/loop09_table3.h"
 #include "cli/options.h"
 #include "io/atomic_file.h"
 #include "io/image_writer.h"
@@ -231,6 +232,66 @@ int run_export(Options const& o)
     return 0;
 }
 
+int run_compare(Options const& o)
+{
+    Job job = prepare(o, "compare");
+    std::erase_if(job.header.config, [](auto const& c) {
+        return c.first == "tess" || c.first == "partitioning" || c.first == "vertex_cache";
+    });
+    job.header.config.emplace_back("level", std::int64_t(o.level));
+    ThreadPool const threads(o.threads);
+    Stopwatch const clock;
+    SurfaceComparison const c =
+        compare_with_limit(*job.prepared.topology, *job.patches, job.frame, o.level, threads);
+    add_run(job.header, job, threads, clock.seconds());
+    auto const row = [](char const* quantity, char const* measure, char const* unit,
+                        ErrorStatistics const& e) {
+        return ErrorRow{quantity, measure, unit, e.max, e.mean, e.rms, e.samples};
+    };
+    std::vector<ErrorRow> const rows{
+        row("position", "closest point, scheme to limit", "diagonal", c.to_limit),
+        row("position", "closest point, limit to scheme", "diagonal", c.from_limit),
+        row("position", "equal parameter", "diagonal", c.equal_position),
+        row("normal", "closest point, scheme to limit", "radians", c.normal_to_limit),
+        row("normal", "closest point, limit to scheme", "radians", c.normal_from_limit),
+        row("normal", "equal parameter", "radians", c.equal_normal)};
+    if (!o.json.empty()) write_result(o.json, compare_report(job.header, c.diagonal, rows));
+    if (o.json != "-") fmt::print("{}", compare_table(rows));
+    return 0;
+}
+
+int run_reproduce(Options const& o)
+{
+    if (o.reproduce != "loop09-table3")
+        throw Error("'" + o.reproduce + "' is not known; there is loop09-table3");
+    ReportHeader header{
+        "reproduce",
+        {{"name", o.reproduce}, {"level", std::int64_t(o.level)}, {"contraction", o.contraction}},
+        {},
+        {},
+        {}};
+    std::vector<ControlMesh> meshes;
+    for (std::string_view name : kLoop09Table3Models) {
+        Model model = load_model(o.models + "/" + std::string(name) + ".obj");
+        header.inputs.emplace_back(model.name, model.sha256);
+        meshes.push_back(std::move(model.mesh));
+    }
+    ThreadPool const threads(o.threads);
+    ProgressBar bar;
+    Stopwatch const clock;
+    PaperTable const table =
+        reproduce_loop09_table3(meshes, o.level, parse_machine(o), threads,
+                                [&](std::size_t n, std::size_t all) { bar(n, all); });
+    bar.clear();
+    header.run = {{"threads", std::int64_t(threads.threads())}, {"seconds", clock.seconds()}};
+    std::vector<PaperRow> rows;
+    for (PaperCell const& c : table.cells) rows.push_back({c.row, c.column, c.paper, c.ours});
+    if (!o.json.empty())
+        write_result(o.json, paper_report(header, table.title, rows, table.remarks));
+    if (o.json != "-") fmt::print("{}", paper_table(table.title, rows, table.remarks));
+    return 0;
+}
+
 int run_info(Options const& o)
 {
     Model model = load_model(o.model);
@@ -419,6 +480,45 @@ int main(int argc, char** argv)
     factors->excludes(batch);
     tess->add_option("-o,--json", o.output, "file for the result instead of standard output");
 
+    CLI::App* compare =
+        verb("compare", "distance and normal error against the Catmull-Clark limit surface",
+             "  tessemu compare cage.obj\n"
+             "  tessemu compare cage.obj --scheme acc --level 5 --json acc.json",
+             run_compare);
+    compare->add_option("MODEL", o.model, "OBJ file or built-in cage")->required();
+    compare->add_option("--level", o.level, "both surfaces at 2^level segments an edge")
+        ->check(CLI::Range(1, 6))
+        ->capture_default_str();
+    compare->add_option("--scheme", o.scheme, "patch scheme, see 'tessemu schemes'")
+        ->capture_default_str();
+    compare->add_option("--set", o.set, "NAME=VALUE: a parameter of the scheme");
+    compare->add_option("--normals", o.normals, "inside a patch: frozen (LOOP09 4.4) or true")
+        ->capture_default_str();
+    compare
+        ->add_option("--contraction", o.contraction,
+                     "products that feed sums: none, all, mixed:SEED")
+        ->capture_default_str();
+    compare->add_option("--lanes", o.lanes, "4, 8 or 16; changes no result")->capture_default_str();
+    compare->add_option("-j", o.threads, "threads; 0: all cores")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    compare->add_option("--json", o.json, "write the result as JSON; '-' is standard output");
+
+    CLI::App* reproduce = verb("reproduce", "a paper's table: its numbers, ours and the ratio",
+                               "  tessemu reproduce loop09-table3 --models cages", run_reproduce);
+    reproduce->add_option("NAME", o.reproduce, "loop09-table3")->required();
+    reproduce
+        ->add_option("--models", o.models,
+                     "folder with the paper's cages: bigguy.obj and monsterfrog.obj")
+        ->capture_default_str();
+    reproduce->add_option("--level", o.level, "surfaces at 2^level segments an edge")
+        ->check(CLI::Range(1, 6))
+        ->capture_default_str();
+    reproduce->add_option("-j", o.threads, "threads; 0: all cores")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    reproduce->add_option("--json", o.json, "write the result as JSON; '-' is standard output");
+
     CLI::App* info = verb("info", "figures of a control mesh and of its patches",
                           "  tessemu info jug\n  tessemu info cage.obj --json info.json", run_info);
     info->add_option("MODEL", o.model, "OBJ file or built-in cage")->required();
@@ -436,7 +536,7 @@ int main(int argc, char** argv)
         return 2;
     }
     if (argc == 2)
-        for (CLI::App* v : {draw, exporter, tess, info})
+        for (CLI::App* v : {draw, exporter, tess, compare, reproduce, info})
             if (v->get_name() == argv[1]) {
                 fmt::print(stderr, "{}", v->help());
                 return 2;

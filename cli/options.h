@@ -13,11 +13,12 @@ struct Options {
     std::string camera = "auto", view = "lit", normals = "frozen", contraction = "none",
                 cull = "none";
     std::string vertex_cache = "fifo:16";
+    std::string reproduce, models = ".";
     std::string domain = "quad", primitive = "triangle_cw", batch;
     std::vector<double> factors;
     std::vector<std::string> set;
     double tess = 8;
-    int lanes = kNativeLanes, threads = 0, samples = 1;
+    int lanes = kNativeLanes, threads = 0, samples = 1, level = 4;
     bool weld = false;
 };
 

@@ -165,6 +165,64 @@ std::string info_report(ReportHeader const& header, MeshSummary const& s,
     return finish(std::move(j), header, [](Sha256&) {});
 }
 
+std::string compare_report(ReportHeader const& header, double diagonal,
+                           std::vector<ErrorRow> const& rows)
+{
+    Json j = start(header);
+    j["diagonal"] = diagonal;
+    j["errors"] = Json::array();
+    for (ErrorRow const& r : rows)
+        j["errors"].push_back({{"quantity", r.quantity},
+                               {"measure", r.measure},
+                               {"unit", r.unit},
+                               {"max", r.max},
+                               {"mean", r.mean},
+                               {"rms", r.rms},
+                               {"samples", r.samples}});
+    return finish(std::move(j), header, [](Sha256&) {});
+}
+
+std::string compare_table(std::vector<ErrorRow> const& rows)
+{
+    std::string out = fmt::format("{:<10} {:<31} {:<9} {:>11} {:>11} {:>11} {:>9}\n", "error",
+                                  "measure", "unit", "max", "mean", "rms", "samples");
+    for (ErrorRow const& r : rows)
+        out += fmt::format("{:<10} {:<31} {:<9} {:>11.4g} {:>11.4g} {:>11.4g} {:>9}\n", r.quantity,
+                           r.measure, r.unit, r.max, r.mean, r.rms, r.samples);
+    return out;
+}
+
+std::string paper_report(ReportHeader const& header, std::string const& title,
+                         std::vector<PaperRow> const& rows, std::vector<std::string> const& remarks)
+{
+    Json j = start(header);
+    j["title"] = title;
+    j["cells"] = Json::array();
+    for (PaperRow const& r : rows)
+        j["cells"].push_back({{"row", r.row},
+                              {"column", r.column},
+                              {"paper", r.paper},
+                              {"ours", r.ours},
+                              {"ratio", r.ours / r.paper}});
+    j["remarks"] = remarks;
+    return finish(std::move(j), header, [](Sha256&) {});
+}
+
+std::string paper_table(std::string const& title, std::vector<PaperRow> const& rows,
+                        std::vector<std::string> const& remarks)
+{
+    std::string out = fmt::format("{}\n\n{:<30} {:<46} {:>9} {:>9} {:>6}\n", title, "", "", "paper",
+                                  "ours", "ratio");
+    std::string row;
+    for (PaperRow const& r : rows) {
+        out += fmt::format("{:<30} {:<46} {:>9.4g} {:>9.4g} {:>6.2f}\n", r.row == row ? "" : r.row,
+                           r.column, r.paper, r.ours, r.ours / r.paper);
+        row = r.row;
+    }
+    for (std::string const& remark : remarks) out += "\n" + remark + "\n";
+    return out;
+}
+
 std::string tessellate_report(ReportHeader const& header, TessellatorCase const& c,
                               TessellatedPatch const& patch)
 {

@@ -48,6 +48,29 @@ std::string info_report(ReportHeader const& header, MeshSummary const& summary,
 std::string tessellate_report(ReportHeader const& header, TessellatorCase const& c,
                               TessellatedPatch const& patch);
 
+/// A quantity's error over a surface.
+struct ErrorRow {
+    std::string quantity, measure, unit;
+    double max, mean, rms;
+    std::size_t samples;
+};
+/// compare
+std::string compare_report(ReportHeader const& header, double diagonal,
+                           std::vector<ErrorRow> const& rows);
+std::string compare_table(std::vector<ErrorRow> const& rows);
+
+/// A cell of a paper's table.
+struct PaperRow {
+    std::string row, column;
+    double paper, ours;
+};
+/// reproduce: each cell with ours / paper.
+std::string paper_report(ReportHeader const& header, std::string const& title,
+                         std::vector<PaperRow> const& rows,
+                         std::vector<std::string> const& remarks);
+std::string paper_table(std::string const& title, std::vector<PaperRow> const& rows,
+                        std::vector<std::string> const& remarks);
+
 /// Counters by stage as text for a terminal.
 std::string counters_table(DrawStatistics const& statistics);
 std::string info_table(MeshSummary const& summary, std::vector<PatchCount> const& patches);

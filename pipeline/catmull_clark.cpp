@@ -3,42 +3,71 @@
 
 namespace tessemu {
 
-ControlMesh catmull_clark_step(Topology const& topology)
+namespace {
+
+using Vec = glm::dvec3;
+
+std::vector<Vec> face_points(ControlMesh const& mesh, std::span<Vec const> x)
+{
+    std::vector<Vec> out(mesh.faces());
+    for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
+        for (std::uint32_t v : mesh.face(f)) out[f] += x[v];
+        out[f] /= double(mesh.face(f).size());
+    }
+    return out;
+}
+
+} // namespace
+
+// Vertices first, then a point for each edge at its first half-edge, then the faces'.
+std::vector<Vec> catmull_clark_points(Topology const& topology, std::span<Vec const> x)
 {
     ControlMesh const& mesh = topology.mesh();
-    auto const vertices = std::uint32_t(mesh.positions.size());
-    auto const at = [&](std::uint32_t v) { return glm::dvec3(mesh.positions[v]); };
-
-    std::vector<glm::dvec3> face_point(mesh.faces());
-    for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
-        glm::dvec3 sum(0);
-        for (std::uint32_t v : mesh.face(f)) sum += at(v);
-        face_point[f] = sum / double(mesh.face(f).size());
-    }
-
-    ControlMesh out;
-    out.name = mesh.name;
-    out.boundary = mesh.boundary;
-    for (std::uint32_t v = 0; v < vertices; ++v) {
+    std::vector<Vec> const face_point = face_points(mesh, x);
+    std::vector<Vec> out;
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
         auto const ring = topology.ring(v);
         double const n = double(ring.size());
         if (ring.empty()) {
-            out.positions.emplace_back(mesh.positions[v]);
+            out.push_back(x[v]);
         } else if (topology.is_boundary(v)) {
-            glm::dvec3 const first = at(topology.vertex_of(topology.next(ring.front())));
-            glm::dvec3 const last = at(topology.vertex_of(topology.previous(ring.back())));
+            Vec const first = x[topology.vertex_of(topology.next(ring.front()))];
+            Vec const last = x[topology.vertex_of(topology.previous(ring.back()))];
             bool const fixed = ring.size() == 1 && mesh.boundary != BoundaryRule::EdgeOnly;
-            out.positions.emplace_back(fixed ? at(v) : (first + 6.0 * at(v) + last) / 8.0);
+            out.push_back(fixed ? x[v] : (first + 6.0 * x[v] + last) / 8.0);
         } else {
-            glm::dvec3 edges(0), faces(0);
+            Vec edges(0), faces(0);
             for (HalfEdge h : ring) {
-                edges += at(topology.vertex_of(topology.next(h)));
+                edges += x[topology.vertex_of(topology.next(h))];
                 faces += face_point[topology.face_of(h)];
             }
-            out.positions.emplace_back((n - 2) / n * at(v) + edges / (n * n) + faces / (n * n));
+            out.push_back((n - 2) / n * x[v] + edges / (n * n) + faces / (n * n));
         }
     }
+    for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
+        HalfEdge const other = topology.twin(h);
+        if (other != Topology::kNone && other < h) continue;
+        Vec const a = x[topology.vertex_of(h)], b = x[topology.vertex_of(topology.next(h))];
+        if (other == Topology::kNone)
+            out.push_back((a + b) / 2.0);
+        else
+            out.push_back(
+                (a + b + face_point[topology.face_of(h)] + face_point[topology.face_of(other)]) /
+                4.0);
+    }
+    out.insert(out.end(), face_point.begin(), face_point.end());
+    return out;
+}
 
+ControlMesh catmull_clark_step(Topology const& topology)
+{
+    ControlMesh const& mesh = topology.mesh();
+    std::vector<Vec> const x(mesh.positions.begin(), mesh.positions.end());
+    ControlMesh out;
+    out.name = mesh.name;
+    out.boundary = mesh.boundary;
+    for (Vec const& p : catmull_clark_points(topology, x)) out.positions.emplace_back(p);
+    auto edges = std::uint32_t(mesh.positions.size());
     std::vector<std::uint32_t> edge_point(mesh.face_vertices.size());
     for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
         HalfEdge const other = topology.twin(h);
@@ -46,18 +75,9 @@ ControlMesh catmull_clark_step(Topology const& topology)
             edge_point[h] = edge_point[other];
             continue;
         }
-        glm::dvec3 const a = at(topology.vertex_of(h)),
-                         b = at(topology.vertex_of(topology.next(h)));
-        edge_point[h] = std::uint32_t(out.positions.size());
-        if (other == Topology::kNone)
-            out.positions.emplace_back((a + b) / 2.0);
-        else
-            out.positions.emplace_back(
-                (a + b + face_point[topology.face_of(h)] + face_point[topology.face_of(other)]) /
-                4.0);
+        edge_point[h] = edges++;
     }
-    auto const first_face_point = std::uint32_t(out.positions.size());
-    for (glm::dvec3 const& f : face_point) out.positions.emplace_back(f);
+    std::uint32_t const first_face_point = edges;
 
     for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
         std::uint32_t const quad[4] = {topology.vertex_of(h), edge_point[h],

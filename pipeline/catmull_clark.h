@@ -5,6 +5,8 @@
 
 #include "pipeline/topology.h"
 
+#include <glm/vec3.hpp>
+
 namespace tessemu {
 
 /// F = mean of the face, E = (a + b + F + F')/4, V = (n-2)/n V + mean(d)/n + mean(F)/n (LOOP10
@@ -16,5 +18,11 @@ namespace tessemu {
 /// by
 ///          face, each starting at its old vertex. Sums run in double and are rounded once.
 ControlMesh catmull_clark_step(Topology const& topology);
+
+/// The positions of the step alone, not rounded.
+///
+/// \param x  positions in place of the mesh's own
+std::vector<glm::dvec3> catmull_clark_points(Topology const& topology,
+                                             std::span<glm::dvec3 const> x);
 
 } // namespace tessemu

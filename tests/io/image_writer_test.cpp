@@ -8,6 +8,8 @@
 
 #include <cmath>
 
+#include <unistd.h>
+
 namespace tessemu {
 namespace {
 
@@ -15,7 +17,8 @@ namespace fs = std::filesystem;
 
 fs::path scratch()
 {
-    fs::path const p = fs::temp_directory_path() / "tessemu_image_test";
+    fs::path const p =
+        fs::temp_directory_path() / ("tessemu_image_test_" + std::to_string(getpid()));
     fs::remove_all(p);
     fs::create_directories(p);
     return p;

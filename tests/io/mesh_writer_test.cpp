@@ -11,6 +11,8 @@
 #include <map>
 #include <sstream>
 
+#include <unistd.h>
+
 namespace tessemu {
 namespace {
 
@@ -18,7 +20,8 @@ namespace fs = std::filesystem;
 
 fs::path scratch()
 {
-    fs::path const p = fs::temp_directory_path() / "tessemu_mesh_test";
+    fs::path const p =
+        fs::temp_directory_path() / ("tessemu_mesh_test_" + std::to_string(getpid()));
     fs::create_directories(p);
     return p;
 }

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/compare.h"
+
+#include <embree3/rtcore.h>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
+#include <cmath>
+#include <memory>
+
+namespace tessemu {
+
+namespace {
+
+using Vec = glm::dvec3;
+
+// The angle between unit vectors without a library arc tangent, so that results have the same bits
+// everywhere: tan(angle/2) = |a - b| / |a + b| is halved four times, tan(x/2) = t / (1 + sqrt(1 +
+// t^2)); of the series at t < 0.05 eight terms are within 2^-60.
+double angle(Vec const& a, Vec const& b)
+{
+    double const apart = glm::length(a - b), together = glm::length(a + b);
+    bool const wide = apart > together; // beyond a right angle: pi less the other angle
+    double t = wide ? together / apart : apart / std::max(together, 1e-300);
+    for (int i = 0; i < 4; ++i) t = t / (1 + std::sqrt(1 + t * t));
+    double sum = 0;
+    for (int k = 7; k >= 0; --k) sum = 1.0 / (2 * k + 1) - t * t * sum;
+    double const result = 2 * 16 * t * sum;
+    return wide ? 3.14159265358979323846 - result : result;
+}
+
+struct Triangles {
+    std::vector<Vec> position, normal;
+    std::vector<std::uint32_t> index;
+    std::vector<double> weight; ///< a third of the areas around a vertex
+
+    void weigh()
+    {
+        weight.assign(position.size(), 0);
+        for (std::size_t t = 0; t + 2 < index.size(); t += 3) {
+            Vec const a = position[index[t]], b = position[index[t + 1]],
+                      c = position[index[t + 2]];
+            double const area = glm::length(cross(b - a, c - a)) / 2;
+            for (std::size_t k = 0; k < 3; ++k) weight[index[t + k]] += area / 3;
+        }
+    }
+};
+
+class Accumulator {
+public:
+    void add(double x, double weight)
+    {
+        s_.max = std::max(s_.max, x);
+        sum_ += weight * x;
+        squares_ += weight * x * x;
+        weight_ += weight;
+        ++s_.samples;
+    }
+    ErrorStatistics result() const
+    {
+        ErrorStatistics s = s_;
+        if (weight_ > 0) {
+            s.mean = sum_ / weight_;
+            s.rms = std::sqrt(squares_ / weight_);
+        }
+        return s;
+    }
+
+private:
+    ErrorStatistics s_;
+    double sum_ = 0, squares_ = 0, weight_ = 0;
+};
+
+// The closest point of a triangle, as weights of b and c (Ericson, Real-Time Collision Detection,
+// section 5.1.5: the region of the triangle's plane that the point projects to).
+glm::dvec2 closest_in_triangle(Vec const& p, Vec const& a, Vec const& b, Vec const& c)
+{
+    Vec const ab = b - a, ac = c - a, ap = p - a;
+    double const d1 = dot(ab, ap), d2 = dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return {0, 0};
+    Vec const bp = p - b;
+    double const d3 = dot(ab, bp), d4 = dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return {1, 0};
+    double const vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return {d1 / (d1 - d3), 0};
+    Vec const cp = p - c;
+    double const d5 = dot(ab, cp), d6 = dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return {0, 1};
+    double const vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return {0, d2 / (d2 - d6)};
+    double const va = d3 * d6 - d5 * d4;
+    if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+        double const w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return {1 - w, w};
+    }
+    double const scale = 1 / (va + vb + vc);
+    return {vb * scale, vc * scale};
+}
+
+class ClosestPoints {
+public:
+    explicit ClosestPoints(Triangles const& t)
+        : t_(t),
+          device_(rtcNewDevice(nullptr)),
+          scene_(rtcNewScene(device_.get()))
+    {
+        RTCGeometry const g = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+        auto* const v = static_cast<float*>(rtcSetNewGeometryBuffer(
+            g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), t.position.size()));
+        for (std::size_t i = 0; i < t.position.size(); ++i)
+            for (int k = 0; k < 3; ++k) v[3 * i + std::size_t(k)] = float(t.position[i][k]);
+        auto* const n = static_cast<std::uint32_t*>(
+            rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                    3 * sizeof(std::uint32_t), t.index.size() / 3));
+        std::copy(t.index.begin(), t.index.end(), n);
+        rtcCommitGeometry(g);
+        rtcAttachGeometry(scene_.get(), g);
+        rtcReleaseGeometry(g);
+        rtcCommitScene(scene_.get());
+    }
+
+    /// Distance and the interpolated normal of the closest point that does not face away from
+    /// `facing`. The tree is in single precision, the distance is not.
+    std::pair<double, Vec> find(Vec const& p, Vec const& facing) const
+    {
+        Search s{&t_, p, facing, 1e300, Vec(0)};
+        RTCPointQuery query{};
+        query.x = float(p.x), query.y = float(p.y), query.z = float(p.z);
+        query.radius = INFINITY;
+        RTCPointQueryContext context;
+        rtcInitPointQueryContext(&context);
+        rtcPointQuery(scene_.get(), &query, &context, &visit, &s);
+        double const length = glm::length(s.normal);
+        return {std::sqrt(s.squared), length > 0 ? s.normal / length : s.normal};
+    }
+
+private:
+    struct Search {
+        Triangles const* t;
+        Vec p;
+        Vec facing;
+        double squared;
+        Vec normal;
+    };
+    static bool visit(RTCPointQueryFunctionArguments* arguments)
+    {
+        auto& s = *static_cast<Search*>(arguments->userPtr);
+        std::uint32_t const* const i = s.t->index.data() + 3 * std::size_t(arguments->primID);
+        auto const& x = s.t->position;
+        glm::dvec2 const w = closest_in_triangle(s.p, x[i[0]], x[i[1]], x[i[2]]);
+        Vec const at = (1 - w.x - w.y) * x[i[0]] + w.x * x[i[1]] + w.y * x[i[2]];
+        double const squared = dot(at - s.p, at - s.p);
+        if (squared >= s.squared) return false;
+        auto const& n = s.t->normal;
+        Vec const normal = (1 - w.x - w.y) * n[i[0]] + w.x * n[i[1]] + w.y * n[i[2]];
+        if (dot(normal, s.facing) < 0) return false; // another sheet of a thin part
+        s.squared = squared;
+        s.normal = normal;
+        // A little wider than the best so far: the tree rounds.
+        arguments->query->radius = float(std::sqrt(squared) * 1.0001 + 1e-30);
+        return true;
+    }
+
+    struct Release {
+        void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
+        void operator()(RTCScene s) const { rtcReleaseScene(s); }
+    };
+    Triangles const& t_;
+    std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
+    std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
+};
+
+void compare_closest(Triangles const& samples, Triangles const& surface, double diagonal,
+                     ThreadPool const& threads, ErrorStatistics& distance, ErrorStatistics& normal)
+{
+    ClosestPoints const closest(surface);
+    std::vector<std::pair<double, double>> errors(samples.position.size());
+    constexpr std::size_t kPiece = 4096;
+    threads.parallel_for((errors.size() + kPiece - 1) / kPiece, [&](std::size_t piece) {
+        for (std::size_t i = piece * kPiece; i < std::min(errors.size(), (piece + 1) * kPiece);
+             ++i) {
+            if (samples.weight[i] == 0) continue;
+            auto const [d, n] = closest.find(samples.position[i], samples.normal[i]);
+            errors[i] = {d / diagonal, angle(samples.normal[i], n)};
+        }
+    });
+    Accumulator d, n;
+    for (std::size_t i = 0; i < errors.size(); ++i) { // in order: the same sum for any threads
+        if (samples.weight[i] == 0) continue;
+        d.add(errors[i].first, samples.weight[i]);
+        n.add(errors[i].second, samples.weight[i]);
+    }
+    distance = d.result();
+    normal = n.result();
+}
+
+} // namespace
+
+SurfaceComparison compare_with_limit(Topology const& topology, PatchMesh const& patches,
+                                     FrameSettings settings, int level, ThreadPool const& threads)
+{
+    if (level > 6) throw LimitError("comparison level", std::uint64_t(level), 6);
+    LimitSurface const limit(topology, level);
+    SurfaceComparison out;
+    Vec low(1e300), high(-1e300);
+    for (glm::vec3 const& p : topology.mesh().positions)
+        low = min(low, Vec(p)), high = max(high, Vec(p));
+    out.diagonal = glm::length(high - low);
+
+    Triangles smooth;
+    smooth.position = limit.positions();
+    smooth.normal = limit.normals();
+    std::vector<char> hole(limit.quads().faces(), 0);
+    for (std::uint32_t f : limit.quads().holes) hole[f] = 1;
+    for (std::size_t f = 0; f < limit.quads().faces(); ++f) {
+        if (hole[f]) continue;
+        auto const q = limit.quads().face(f);
+        smooth.index.insert(smooth.index.end(), {q[0], q[1], q[2], q[0], q[2], q[3]});
+    }
+    smooth.weigh();
+
+    settings.tess_factor = float(limit.grid());
+    settings.partitioning = Partitioning::Integer;
+    Triangles scheme;
+    std::vector<std::uint32_t> partner; // the limit's vertex at the same parameter
+    constexpr std::uint32_t kNoPartner = 0xffffffffu;
+    visit_surface(patches, settings, threads, [&](DrawPass const& pass, ShadedPatch const& p) {
+        PatchOrigin const& origin = pass.patches[p.primitive_id];
+        auto const first = std::uint32_t(scheme.position.size());
+        for (std::size_t i = 0; i < p.points->patch.points(); ++i) {
+            auto const component = [&](std::size_t k) {
+                return double(p.outputs[k * p.stride + i]);
+            };
+            scheme.position.emplace_back(component(0), component(1), component(2));
+            scheme.normal.emplace_back(component(4), component(5), component(6));
+            std::uint32_t at = kNoPartner;
+            if (limit.has_grid(origin.face)) {
+                FacePoint const f = domain_to_face(origin, p.points->u[i], p.points->v[i]);
+                at = limit.vertex(origin.face, int(f.u * float(limit.grid())),
+                                  int(f.v * float(limit.grid())));
+            }
+            partner.push_back(at);
+        }
+        for (std::uint32_t i : p.points->patch.indices) scheme.index.push_back(first + i);
+    });
+    scheme.weigh();
+    out.triangles_of_scheme = scheme.index.size() / 3;
+    out.triangles_of_limit = smooth.index.size() / 3;
+
+    // Weights are areas of the limit surface, the same for every scheme.
+    Triangles same = scheme;
+    for (std::size_t i = 0; i < partner.size(); ++i)
+        if (partner[i] != kNoPartner) same.position[i] = smooth.position[partner[i]];
+    same.weigh();
+    Accumulator position, normal;
+    for (std::size_t i = 0; i < partner.size(); ++i) {
+        if (partner[i] == kNoPartner) continue;
+        position.add(glm::length(scheme.position[i] - same.position[i]) / out.diagonal,
+                     same.weight[i]);
+        normal.add(angle(scheme.normal[i], smooth.normal[partner[i]]), same.weight[i]);
+    }
+    out.equal_position = position.result();
+    out.equal_normal = normal.result();
+    compare_closest(scheme, smooth, out.diagonal, threads, out.to_limit, out.normal_to_limit);
+    compare_closest(smooth, scheme, out.diagonal, threads, out.from_limit, out.normal_from_limit);
+    return out;
+}
+
+} // namespace tessemu

@@ -1,0 +1,39 @@
+// Error of a scheme's surface against the Catmull-Clark limit surface, as LOOP09's table 3 has it.
+//
+// Both surfaces are sampled at tess factor 2^level: the scheme's domain points by a draw, the limit
+// surface on its dyadic grid, where both are exact. By equal parameter a sample is compared with
+// the other surface's point of the same face and (u,v). By closest point (Metro: Cignoni, Rocchini,
+// Scopigno 1998) it is compared with the closest point of the other surface's triangles, found by
+// Embree's point query, and the normal interpolated there; triangles lie about a quarter of a
+// sample distance squared times the curvature inside a curved surface, which the distance includes.
+// Samples weigh as the area around them.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "analysis/limit_surface.h"
+#include "pipeline/frame.h"
+
+namespace tessemu {
+
+/// Of a quantity over a surface.
+struct ErrorStatistics {
+    double max = 0, mean = 0, rms = 0;
+    std::size_t samples = 0;
+};
+
+struct SurfaceComparison {
+    double diagonal = 0; ///< of the control mesh's bounding box; distances are divided by it
+    ErrorStatistics to_limit, from_limit; ///< closest point: scheme's samples, limit's samples
+    ErrorStatistics normal_to_limit, normal_from_limit; ///< angles there, radians
+    ErrorStatistics equal_position, equal_normal;       ///< by equal parameter; quads only
+    std::size_t triangles_of_scheme = 0, triangles_of_limit = 0;
+};
+
+/// \param topology  of the mesh that `patches` was built from
+/// \param settings  machine and normals; tess factor and partitioning are the comparison's
+/// \param level     1 to 6. \cost 4^level points a face on both sides, and Embree's trees on them
+SurfaceComparison compare_with_limit(Topology const& topology, PatchMesh const& patches,
+                                     FrameSettings settings, int level, ThreadPool const& threads);
+
+} // namespace tessemu

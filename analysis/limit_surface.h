@@ -1,0 +1,48 @@
+// The Catmull-Clark limit surface on a dyadic grid: refinement in double, then limit masks.
+//
+// Limit position and tangent plane by the formulas of LOOP09 3.3 and 4.6, which are exact on a
+// refined mesh (sheet section 2). At boundary vertices with more than two faces the tangent plane
+// is that of the modified edge rule (sheet section 4) and the refinement is the plain one; both
+// agree everywhere else.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pipeline/topology.h"
+
+#include <glm/vec3.hpp>
+
+namespace tessemu {
+
+class LimitSurface {
+public:
+    /// \param level  refinements, 1 to 7: each face of n sides becomes n 4^(level-1) quads
+    /// Creases and corners of the mesh are smooth. \cost memory and time linear in the quads
+    LimitSurface(Topology const& topology, int level);
+
+    int level() const { return level_; }
+    int grid() const { return 1 << level_; } ///< segments along an edge of a base quad
+
+    std::vector<glm::dvec3> const& positions() const { return position_; }
+    std::vector<glm::dvec3> const& normals() const { return normal_; } ///< unit; 0 where undefined
+    ControlMesh const& quads() const { return mesh_; }
+
+    /// Vertex at (i, j) / grid() of a base face that is a quad: i from corner 0 to corner 1, j from
+    /// corner 0 to corner 3.
+    std::uint32_t vertex(std::uint32_t face, int i, int j) const
+    {
+        auto const n = std::size_t(grid() + 1);
+        return grid_[grid_start_[face] + std::size_t(j) * n + std::size_t(i)];
+    }
+    bool has_grid(std::uint32_t face) const { return grid_start_[face] != kNone; }
+
+private:
+    static constexpr std::size_t kNone = std::size_t(-1);
+    int level_;
+    ControlMesh mesh_; ///< the last refinement; its own positions are rounded
+    std::vector<glm::dvec3> position_, normal_;
+    std::vector<std::size_t> grid_start_; ///< by base face
+    std::vector<std::uint32_t> grid_;
+};
+
+} // namespace tessemu
