@@ -8,6 +8,8 @@
 #include "io/mesh_writer.h"
 #include "io/model.h"
 #include "io/report.h"
+#include "io/result_diff.h"
+#include "io/sha256.h"
 #include "pipeline/builtin_models.h"
 #include "pipeline/frame.h"
 
@@ -292,6 +294,25 @@ int run_reproduce(Options const& o)
     return 0;
 }
 
+int run_diff(Options const& o)
+{
+    if (!(o.tolerance >= 0))
+        throw Error(fmt::format("--tolerance is {}, it must be 0 or above", o.tolerance));
+    std::string const a = read_file(o.model), b = read_file(o.other);
+    std::vector<ResultValue> const values =
+        diff_results(a, b, {o.model, o.other}, o.tolerance);
+    auto const input = [](std::string const& path, std::string const& text) {
+        Sha256 sha;
+        sha.add(text.data(), text.size());
+        return std::pair(path.substr(path.rfind('/') + 1), sha.hex());
+    };
+    ReportHeader const header{
+        "diff", {{"tolerance", o.tolerance}}, {input(o.model, a), input(o.other, b)}, {}, {}};
+    if (!o.json.empty()) write_result(o.json, diff_report(header, values));
+    if (o.json != "-") fmt::print("{}", diff_table(values, o.all));
+    return std::any_of(values.begin(), values.end(), [](auto const& v) { return v.differs; });
+}
+
 int run_info(Options const& o)
 {
     Model model = load_model(o.model);
@@ -519,6 +540,20 @@ int main(int argc, char** argv)
         ->capture_default_str();
     reproduce->add_option("--json", o.json, "write the result as JSON; '-' is standard output");
 
+    CLI::App* diff = verb("diff", "two results side by side; exit status 1 where they differ",
+                          "  tessemu draw jug --json now.json && tessemu diff golden.json now.json\n"
+                          "  tessemu diff acc.json gregory.json --all\n"
+                          "  tessemu diff golden.json now.json --tolerance 0.01",
+                          run_diff);
+    diff->add_option("A", o.model, "a result, as --json writes it")->required();
+    diff->add_option("B", o.other, "another")->required();
+    diff->add_option("--tolerance", o.tolerance,
+                     "numbers may differ by this share of the larger one; above 0, hashes are not "
+                     "compared")
+        ->capture_default_str();
+    diff->add_flag("--all", o.all, "show equal values too");
+    diff->add_option("--json", o.json, "write the result as JSON; '-' is standard output");
+
     CLI::App* info = verb("info", "figures of a control mesh and of its patches",
                           "  tessemu info jug\n  tessemu info cage.obj --json info.json", run_info);
     info->add_option("MODEL", o.model, "OBJ file or built-in cage")->required();
@@ -536,7 +571,7 @@ int main(int argc, char** argv)
         return 2;
     }
     if (argc == 2)
-        for (CLI::App* v : {draw, exporter, tess, compare, reproduce, info})
+        for (CLI::App* v : {draw, exporter, tess, compare, reproduce, diff, info})
             if (v->get_name() == argv[1]) {
                 fmt::print(stderr, "{}", v->help());
                 return 2;

@@ -17,9 +17,10 @@ struct Options {
     std::string domain = "quad", primitive = "triangle_cw", batch;
     std::vector<double> factors;
     std::vector<std::string> set;
-    double tess = 8;
+    std::string other;
+    double tess = 8, tolerance = 0;
     int lanes = kNativeLanes, threads = 0, samples = 1, level = 4;
-    bool weld = false;
+    bool weld = false, all = false;
 };
 
 // Each throws Error that names the option, the value and what is allowed.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/report.h"
 
+#include "io/result_diff.h"
 #include "io/sha256.h"
 
 #include <fmt/format.h>
@@ -190,6 +191,21 @@ std::string compare_table(std::vector<ErrorRow> const& rows)
         out += fmt::format("{:<10} {:<31} {:<9} {:>11.4g} {:>11.4g} {:>11.4g} {:>9}\n", r.quantity,
                            r.measure, r.unit, r.max, r.mean, r.rms, r.samples);
     return out;
+}
+
+std::string diff_report(ReportHeader const& header, std::vector<ResultValue> const& values)
+{
+    Json j = start(header);
+    j["values"] = values.size();
+    j["differences"] = Json::array();
+    auto const value = [](std::string const& text) { return text.empty() ? Json() : Json::parse(text); };
+    for (ResultValue const& v : values)
+        if (v.differs)
+            j["differences"].push_back({{"path", v.path},
+                                        {"a", value(v.a)},
+                                        {"b", value(v.b)},
+                                        {"relative", v.relative}});
+    return finish(std::move(j), header, [](Sha256&) {});
 }
 
 std::string paper_report(ReportHeader const& header, std::string const& title,
