@@ -181,11 +181,13 @@ int run_draw(Options const& o)
     f.camera = parse_camera(o.camera, *job.prepared.mesh, float(width) / float(height));
     f.cull = parse_cull(o.cull);
     f.samples = o.samples;
+    f.adaptive = parse_tess_edge(o.tess_edge);
     if (o.output.ends_with(".exr")) f.color_format = Format::R32G32B32A32_FLOAT;
 
     Config& c = job.header.config;
     c.emplace_back("width", std::int64_t(width));
     c.emplace_back("height", std::int64_t(height));
+    c.emplace_back("tess_edge", o.tess_edge);
     c.emplace_back("view", o.view);
     c.emplace_back("cull", o.cull);
     c.emplace_back("samples", std::int64_t(o.samples));
@@ -299,8 +301,7 @@ int run_diff(Options const& o)
     if (!(o.tolerance >= 0))
         throw Error(fmt::format("--tolerance is {}, it must be 0 or above", o.tolerance));
     std::string const a = read_file(o.model), b = read_file(o.other);
-    std::vector<ResultValue> const values =
-        diff_results(a, b, {o.model, o.other}, o.tolerance);
+    std::vector<ResultValue> const values = diff_results(a, b, {o.model, o.other}, o.tolerance);
     auto const input = [](std::string const& path, std::string const& text) {
         Sha256 sha;
         sha.add(text.data(), text.size());
@@ -465,6 +466,11 @@ int main(int argc, char** argv)
             "lit, normals, patches, depth, wire, coverage: how often a pixel is covered, before "
             "depth")
         ->capture_default_str();
+    draw->add_option(
+            "--tess-edge", o.tess_edge,
+            "factors edge by edge: pixels=P, segments of about P pixels; distance=D, --tess "
+            "at distance D and falling with it; none: --tess everywhere")
+        ->capture_default_str();
     draw->add_option("--samples", o.samples, "1, 2, 4 or 8 samples a pixel, resolved")
         ->check(CLI::IsMember({1, 2, 4, 8}))
         ->capture_default_str();
@@ -540,11 +546,12 @@ int main(int argc, char** argv)
         ->capture_default_str();
     reproduce->add_option("--json", o.json, "write the result as JSON; '-' is standard output");
 
-    CLI::App* diff = verb("diff", "two results side by side; exit status 1 where they differ",
-                          "  tessemu draw jug --json now.json && tessemu diff golden.json now.json\n"
-                          "  tessemu diff acc.json gregory.json --all\n"
-                          "  tessemu diff golden.json now.json --tolerance 0.01",
-                          run_diff);
+    CLI::App* diff =
+        verb("diff", "two results side by side; exit status 1 where they differ",
+             "  tessemu draw jug --json now.json && tessemu diff golden.json now.json\n"
+             "  tessemu diff acc.json gregory.json --all\n"
+             "  tessemu diff golden.json now.json --tolerance 0.01",
+             run_diff);
     diff->add_option("A", o.model, "a result, as --json writes it")->required();
     diff->add_option("B", o.other, "another")->required();
     diff->add_option("--tolerance", o.tolerance,

@@ -127,6 +127,20 @@ std::map<std::string, double> parse_parameters(Options const& o)
     return out;
 }
 
+AdaptiveFactors parse_tess_edge(std::string const& text)
+{
+    if (text == "none") return {};
+    std::size_t const equals = text.find('=');
+    std::string const key = text.substr(0, equals);
+    if (equals == std::string::npos || (key != "pixels" && key != "distance"))
+        throw Error("--tess-edge is '" + text + "', it must be none, pixels=P or distance=D");
+    double const value = number(text.substr(equals + 1), "--tess-edge " + key);
+    if (!(value > 0 && value < 1e30))
+        throw Error(fmt::format("--tess-edge: {} is {}, it must be above 0", key, value));
+    return {key == "pixels" ? AdaptiveFactors::Kind::Pixels : AdaptiveFactors::Kind::Distance,
+            float(value)};
+}
+
 CullMode parse_cull(std::string const& text)
 {
     if (text == "none") return CullMode::None;

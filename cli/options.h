@@ -12,7 +12,7 @@ struct Options {
     std::string scheme = "gregory-stencil", partitioning = "fractional_odd", size = "1024x1024";
     std::string camera = "auto", view = "lit", normals = "frozen", contraction = "none",
                 cull = "none";
-    std::string vertex_cache = "fifo:16";
+    std::string vertex_cache = "fifo:16", tess_edge = "none";
     std::string reproduce, models = ".";
     std::string domain = "quad", primitive = "triangle_cw", batch;
     std::vector<double> factors;
@@ -29,6 +29,8 @@ std::pair<int, int> parse_size(std::string const& text);
 Camera parse_camera(std::string const& text, ControlMesh const& mesh, float width_over_height);
 Machine parse_machine(Options const& o);
 std::map<std::string, double> parse_parameters(Options const& o);
+/// none, pixels=P or distance=D
+AdaptiveFactors parse_tess_edge(std::string const& text);
 CullMode parse_cull(std::string const& text);
 
 } // namespace tessemu

@@ -70,11 +70,27 @@ std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
     }
 }
 
+TessFactorRule tess_factor_rule(AdaptiveFactors const& adaptive, Camera const& camera, int height,
+                                float tess_factor)
+{
+    TessFactorRule r;
+    r.eye = {camera.eye.x, camera.eye.y, camera.eye.z};
+    if (adaptive.kind == AdaptiveFactors::Kind::Pixels) {
+        r.kind = TessFactorRule::Kind::ProjectedLength;
+        r.scale = camera.focal * float(height) / (2 * adaptive.value);
+    } else if (adaptive.kind == AdaptiveFactors::Kind::Distance) {
+        r.kind = TessFactorRule::Kind::Distance;
+        r.scale = tess_factor * adaptive.value;
+    }
+    return r;
+}
+
 namespace {
 PassSettings pass_settings(FrameSettings const& s)
 {
     PassSettings p;
     p.tess_factor = s.tess_factor;
+    p.adaptive = tess_factor_rule(s.adaptive, s.camera, s.height, s.tess_factor);
     p.partitioning = s.partitioning;
     p.machine = s.machine;
     p.true_normals = s.true_normals;

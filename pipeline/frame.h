@@ -20,6 +20,17 @@ inline constexpr View kViews[] = {View::Lit,   View::Normals, View::Patches,
 std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
                                               Camera const& camera, Machine const& machine);
 
+/// Tess factors from the camera, an edge at a time.
+struct AdaptiveFactors {
+    enum class Kind { None, Pixels, Distance };
+    Kind kind = Kind::None;
+    float value = 8; ///< Pixels: length of a segment in the picture. Distance: at which an edge
+                     ///< gets the frame's tess factor; it falls with the distance
+};
+/// As the hull shaders have it.
+TessFactorRule tess_factor_rule(AdaptiveFactors const& adaptive, Camera const& camera, int height,
+                                float tess_factor);
+
 struct FrameSettings {
     int width = 1024, height = 1024;
     Camera camera;
@@ -29,6 +40,7 @@ struct FrameSettings {
     int samples = 1;                ///< 1, 2, 4 or 8
     Format color_format = Format::R8G8B8A8_UNORM;
     float tess_factor = 1;
+    AdaptiveFactors adaptive; ///< instead of the uniform factor
     Partitioning partitioning = Partitioning::FractionalOdd;
     bool true_normals = false;
     Machine machine;

@@ -45,7 +45,7 @@ std::shared_ptr<HullProgram const> sector_hull_program(SectorBuffers const& buff
     hs.offsets = {buffers.offsets, 0, "corner_offsets"};
     hs.edges = {buffers.edges, 1, "edge_bits"};
     hs.angles = {buffers.angles, 2, "angles"};
-    hs.factors.fill(settings.tess_factor);
+    hs.factors = settings.factor_rule();
     return make_hull_program(hs, settings.machine);
 }
 

@@ -50,7 +50,7 @@ std::shared_ptr<HullProgram const> stencil_hull_program(StencilBuffers const& bu
     hs.zero_masks = {buffers.zero_masks, 1, "zero_masks"};
     hs.patches = {buffers.patches, 2, "patch_words"};
     hs.order = {buffers.order, 3, "order"};
-    hs.factors.fill(settings.tess_factor);
+    hs.factors = settings.factor_rule();
     return make_hull_program(hs, settings.machine);
 }
 

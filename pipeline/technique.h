@@ -11,6 +11,7 @@
 #include "emu/graphics_pipeline.h"
 #include "pipeline/topology.h"
 #include "shaders_cpp/projected_surface.h"
+#include "shaders_cpp/tess_factor_rule.h"
 
 #include <map>
 
@@ -51,13 +52,21 @@ struct PatchKind {
 
 /// What a pass is made for.
 struct PassSettings {
-    float tess_factor = 1; ///< uniform; every edge and the inside
+    float tess_factor = 1;   ///< uniform; every edge and the inside
+    TessFactorRule adaptive; ///< instead of it, unless its kind is Uniform
     Partitioning partitioning = Partitioning::FractionalOdd;
     Machine machine;
     bool true_normals = false; ///< interior normals of the rational surface, not of frozen F
     Matrix4 view_projection = kIdentity;
     /// Called once per pass; absent: rasterization is off.
     std::function<std::shared_ptr<PixelProgram const>(PatchKind const&)> pixel_shader;
+
+    TessFactorRule factor_rule() const
+    {
+        TessFactorRule rule = adaptive;
+        rule.uniform = tess_factor;
+        return rule;
+    }
 };
 
 /// One draw of a technique. Dispatches and stream-outs will stand beside it.

@@ -6,7 +6,7 @@
 
 #include "emu/hull_shader.h"
 #include "shaders_cpp/ring_vertex.h"
-#include "shaders_cpp/watertight_patch.h"
+#include "shaders_cpp/tess_factor_rule.h"
 
 namespace tessemu {
 
@@ -30,7 +30,7 @@ template <int kSides_, class Weight = float> struct SectorTables {
     Buffer<std::uint32_t> edges;   ///< [patch]: bit k: edge k runs against its canonical direction;
                                    ///< bit 8 + k: it lies on the boundary
     Buffer<Weight> angles;         ///< [row][2]: the vertex's cosine, and sin(2pi/n)
-    std::array<float, 6> factors{1, 1, 1, 1, 1, 1}; ///< uniform tess factors
+    TessFactorRule factors;
 
     int control_points() const { return kSides; }
     std::vector<ResourceInfo> resources() const
@@ -117,11 +117,19 @@ template <int kSides_, class Weight = float> struct SectorTables {
     }
 
     template <class T>
-    std::array<T, 6> tess_factors(PatchInput, ControlPoints<RingVertex<T>> const&, auto const&,
-                                  ControlPoints<EdgeRegister<T>> const&) const
+    std::array<T, 6> tess_factors(PatchInput, ControlPoints<RingVertex<T>> const&, auto const& out,
+                                  ControlPoints<EdgeRegister<T>> const& registers) const
     {
-        return {T(factors[0]), T(factors[1]), T(factors[2]),
-                T(factors[3]), T(factors[4]), T(factors[5])};
+        using L = SectorLayout;
+        constexpr auto kDomain = kSides == 4 ? TessellatorDomain::Quad : TessellatorDomain::Tri;
+        return factors.template factors<kDomain, T>(
+            [&](int k) {
+                int const after = (k + 1) % kSides;
+                float3<T> const p0 = out.vector(k, L::kP), p1 = out.vector(k, L::kEPlus),
+                                p2 = out.vector(after, L::kEMinus), p3 = out.vector(after, L::kP);
+                return EdgeCurve<T>{p0, p1, p2, p3, float3<T>(p1 - p0), float3<T>(p3 - p2)};
+            },
+            [&](int k) { return registers[4 * k].reversed > T(0); });
     }
 };
 

@@ -13,7 +13,7 @@
 #pragma once
 
 #include "emu/hull_shader.h"
-#include "shaders_cpp/watertight_patch.h"
+#include "shaders_cpp/tess_factor_rule.h"
 
 namespace tessemu {
 
@@ -42,7 +42,7 @@ template <TessellatorDomain kDomain_, class Weight = float> struct StencilHullSh
         zero_masks;                ///< [type][row]: bit i set where the weight of input i is not 0
     Buffer<std::uint32_t> patches; ///< [patch][StencilPatchWords]
     Buffer<std::uint8_t> order;    ///< [patch][k]: inputs in ascending global vertex id
-    std::array<float, 6> factors{1, 1, 1, 1, 1, 1}; ///< uniform tess factors
+    TessFactorRule factors;
 
     int control_points() const { return points; }
     int patch_constants() const { return 6 * kSides; }
@@ -117,11 +117,13 @@ template <TessellatorDomain kDomain_, class Weight = float> struct StencilHullSh
     }
 
     template <class T>
-    std::array<T, 6> tess_factors(PatchInput, ControlPoints<ControlVertex<T>> const&, auto const&,
-                                  ControlPoints<EdgeRegister<T>> const&) const
+    std::array<T, 6> tess_factors(PatchInput, ControlPoints<ControlVertex<T>> const&,
+                                  ControlPoints<ControlVertex<T>> const& out,
+                                  ControlPoints<EdgeRegister<T>> const& registers) const
     {
-        return {T(factors[0]), T(factors[1]), T(factors[2]),
-                T(factors[3]), T(factors[4]), T(factors[5])};
+        return factors.template factors<kDomain, T>(
+            [&](int k) { return cubic_edge<kSides>(out, k); },
+            [&](int k) { return registers[4 * k].reversed > T(0); });
     }
 };
 

@@ -35,6 +35,16 @@ struct AccHullShader : StencilHullShader<TessellatorDomain::Quad, Weight> {
             },
             AccControlPoint<T>{{sum, zero}});
     }
+
+    template <class T>
+    std::array<T, 6> tess_factors(PatchInput, ControlPoints<ControlVertex<T>> const&,
+                                  ControlPoints<AccControlPoint<T>> const& out,
+                                  ControlPoints<EdgeRegister<T>> const& registers) const
+    {
+        return Sums::factors.template factors<TessellatorDomain::Quad, T>(
+            [&](int k) { return AccQuadInside::edge<T>(out, k); },
+            [&](int k) { return registers[4 * k].reversed > T(0); });
+    }
 };
 
 } // namespace tessemu

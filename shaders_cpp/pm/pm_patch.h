@@ -39,8 +39,9 @@ template <class T> constexpr PmSectorPoint<4, T> pm_sector_of_quad(T u, T v)
 }
 template <class T> constexpr PmSectorPoint<3, T> pm_sector_of_triangle(T b0, T b1, T b2)
 {
-    mask_of<T> const two = (b2 <= b0) & (b2 <= b1); // b2 is smallest: sector 0
-    mask_of<T> const zero = mask_of<T>(!two) & (b0 <= b1), one = !(two | zero);
+    mask_of<T> const not_0 = b2 <= b0, not_1 = b2 <= b1, under_1 = b0 <= b1;
+    mask_of<T> const two = not_0 & not_1; // b2 is smallest: sector 0
+    mask_of<T> const other = !two, zero = other & under_1, one = !(two | zero);
     T const least = select(two, b2, select(zero, b0, b1));
     T const first = select(two, b0, select(zero, b1, b2));
     T const second = select(two, b1, select(zero, b2, b0));

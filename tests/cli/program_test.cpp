@@ -67,7 +67,8 @@ TEST(Program, HelpAndVersionExitZeroOnEachVerb)
 
 TEST(Program, AVerbWithoutItsArgumentPrintsHelpAndExitsTwo)
 {
-    for (char const* verb : {"", "draw", "export", "tessellate", "info"}) {
+    for (char const* verb :
+         {"", "draw", "export", "tessellate", "compare", "reproduce", "diff", "info"}) {
         Result const r = run(verb);
         EXPECT_EQ(r.status, 2) << verb;
         EXPECT_TRUE(r.out.empty()) << verb;
@@ -91,6 +92,14 @@ TEST(Program, BadUsageExitsTwoWithOneLineThatNamesTheValue)
              {"draw jug --contraction mixed:x", "mixed"},
              {"draw jug --vertex-cache fifo:0", "fifo:0"},
              {"draw jug --set sigma=2", "sigma"},
+             {"draw jug --tess-edge pixel=3", "pixels=P"},
+             {"draw jug --tess-edge pixels=0", "above 0"},
+             {"draw jug --scheme acc", "triangles"},
+             {"draw jug --scheme pm", "closed meshes only"},
+             {"compare jug --level 7", "7"},
+             {"reproduce table9", "loop09-table3"},
+             {"reproduce loop09-table3 --models nowhere", "nowhere/monsterfrog.obj"},
+             {"diff nowhere.json nowhere.json", "nowhere.json"},
              {"draw jug -o picture.bmp", ".bmp"},
              {"draw jug -o missing/folder/a.png", "missing/folder"},
              {"draw jug -j -1", "-1"},
@@ -125,6 +134,29 @@ TEST(Program, DrawWritesPictureTableAndJson)
     EXPECT_EQ(c["HSControlPointInvocations"].get<int>() > 15 * c["HSInvocations"].get<int>(), true);
     EXPECT_EQ(j["stages"]["domain_shader"]["invocations"], c["DSInvocations"]);
     EXPECT_EQ(j.dump().find(scratch().string()), std::string::npos) << "a path in the result";
+}
+
+TEST(Program, DiffExitsOneWhereResultsDiffer)
+{
+    std::string const a = (scratch() / "a.json").string(), b = (scratch() / "b.json").string();
+    ASSERT_EQ(run("draw jug --size 64x48 --json " + a).status, 0);
+    ASSERT_EQ(run("draw jug --size 64x48 -j 1 --lanes 4 --json " + b).status, 0);
+    EXPECT_EQ(run("diff " + a + " " + b).status, 0);
+    ASSERT_EQ(run("draw jug --size 64x48 --tess 12 --json " + b).status, 0);
+    Result const r = run("diff " + a + " " + b);
+    EXPECT_EQ(r.status, 1);
+    EXPECT_NE(r.out.find("counters.DSInvocations"), std::string::npos);
+    EXPECT_EQ(run("diff " + a + " " + b + " --tolerance 1").status, 0) << "numbers alone differ";
+}
+
+TEST(Program, CompareGivesTheSameResultForAnyThreadsAndLanes)
+{
+    Result const a = run("compare saddle_star --level 3 -j 1 --lanes 4 --json -"),
+                 b = run("compare saddle_star --level 3 -j 3 --lanes 16 --json -");
+    ASSERT_EQ(a.status, 0) << a.err;
+    Json const x = Json::parse(a.out), y = Json::parse(b.out);
+    EXPECT_EQ(x["errors"].size(), 6u);
+    EXPECT_EQ(x["hash"], y["hash"]);
 }
 
 TEST(Program, TheHashDoesNotDependOnThreadsLanesOrWhereTheModelLies)

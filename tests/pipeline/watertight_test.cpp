@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace tessemu {
@@ -62,6 +63,7 @@ void expect_closed(std::string const& model, char const* scheme = "gregory-stenc
             test::EdgeComparison const c =
                 test::compare_edges(*m.mesh.mesh, *m.patches, s, threads);
             ASSERT_GT(c.shared_points, 0u);
+            ASSERT_EQ(c.lonely_points, 0u) << model << " factor " << factor;
             ASSERT_EQ(c.differing_positions, 0u)
                 << model << " factor " << factor << " policy " << int(machine.contraction)
                 << " seed " << machine.seed << ": " << c.first_difference;
@@ -74,6 +76,65 @@ void expect_closed(std::string const& model, char const* scheme = "gregory-stenc
 TEST(GregoryStencil, R68V16SharedEdgesOfBuiltInCagesHaveEqualBits)
 {
     for (char const* model : {"jug", "spindle", "saddle_star"}) expect_closed(model);
+}
+
+// Factors from the camera: neighbours agree on them, and on every point.
+void expect_closed_adaptive(std::string const& model, char const* scheme)
+{
+    Loaded const m = load_patches(model, scheme);
+    FrameSettings s;
+    s.height = 512;
+    s.camera = frame_points(m.mesh.mesh->positions, {0.5f, 0.4f, 1}, 1);
+    for (Machine const& machine : contraction_policies())
+        for (AdaptiveFactors const adaptive :
+             {AdaptiveFactors{AdaptiveFactors::Kind::Pixels, 6},
+              AdaptiveFactors{AdaptiveFactors::Kind::Distance, 2.5f}}) {
+            s.machine = machine;
+            s.adaptive = adaptive;
+            s.tess_factor = 12;
+            test::EdgeComparison const c =
+                test::compare_edges(*m.mesh.mesh, *m.patches, s, ThreadPool());
+            ASSERT_GT(c.shared_edge_coordinates, 1000u);
+            ASSERT_EQ(c.lonely_points, 0u) << model << " " << scheme;
+            ASSERT_EQ(c.differing_positions, 0u) << model << " " << scheme;
+            ASSERT_EQ(c.differing_normals, 0u) << model << " " << scheme;
+        }
+}
+
+TEST(AdaptiveFactors, EverySchemeStaysClosed)
+{
+    for (char const* scheme : {"gregory-stencil", "gregory-two-stage"})
+        for (char const* model : {"jug", "spindle", "saddle_star"})
+            expect_closed_adaptive(model, scheme);
+    expect_closed_adaptive("saddle_star", "acc");
+    expect_closed_adaptive("spindle", "pm");
+    if (std::filesystem::exists(test::shared("models/bigguy.obj")))
+        for (char const* scheme : {"gregory-stencil", "gregory-two-stage", "acc", "pm"})
+            expect_closed_adaptive(test::shared("models/bigguy.obj").string(), scheme);
+}
+
+// Segments of a flat square seen head on are as long as asked for.
+TEST(AdaptiveFactors, PixelsAreTheLengthOfASegmentInThePicture)
+{
+    Loaded const m = load_patches("saddle_star");
+    for (float pixels : {4.0f, 16.0f}) {
+        FrameSettings s;
+        s.height = 512;
+        s.camera = frame_points(m.mesh.mesh->positions, {0, 0, 1}, 1);
+        s.adaptive = {AdaptiveFactors::Kind::Pixels, pixels};
+        TessFactorRule const r = tess_factor_rule(s.adaptive, s.camera, s.height, 1);
+        glm::vec3 const to = s.camera.target - s.camera.eye;
+        float const distance = std::sqrt(to.x * to.x + to.y * to.y + to.z * to.z);
+        // 100 pixels long at the target, across the view.
+        float const length = 100 * 2 * distance / (s.camera.focal * 512);
+        glm::vec3 const right = s.camera.right(), c = s.camera.target;
+        auto const at = [&](float t) {
+            glm::vec3 const p = c + right * (t * length);
+            return float3<float>(p.x, p.y, p.z);
+        };
+        float const f = r.edge_factor<float>(at(-0.5f), at(-1.0f / 6), at(1.0f / 6), at(0.5f));
+        EXPECT_NEAR(f, 100 / pixels, 1e-4f * 100 / pixels);
+    }
 }
 
 TEST(Acc, SharedEdgesOfBuiltInCagesHaveEqualBits)

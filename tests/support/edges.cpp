@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
+#include <map>
 #include <unordered_map>
 
 namespace tessemu::test {
@@ -24,7 +26,22 @@ struct PlaceHash {
 struct Seen {
     std::array<std::uint32_t, 6> bits;
     bool shared = false;
+    bool outline = false; // of a patch's triangles
 };
+
+// Points on the outline of a patch's triangles. With fractional_odd spacing and an inside factor of
+// 1, points of inner rings lie on the patch's edges too (V18); those are inside the triangulation.
+std::vector<char> outline_of(TessellatedPatch const& t)
+{
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> triangles;
+    for (std::size_t i = 0; i + 2 < t.indices.size(); i += 3)
+        for (std::size_t k = 0; k < 3; ++k)
+            ++triangles[std::minmax(t.indices[i + k], t.indices[i + (k + 1) % 3])];
+    std::vector<char> out(t.points(), 0);
+    for (auto const& [edge, n] : triangles)
+        if (n == 1) out[edge.first] = out[edge.second] = 1;
+    return out;
+}
 } // namespace
 
 EdgeComparison compare_edges(ControlMesh const& mesh, PatchMesh const& patches,
@@ -37,16 +54,20 @@ EdgeComparison compare_edges(ControlMesh const& mesh, PatchMesh const& patches,
     settings.tess_factor = s.tess_factor;
     settings.partitioning = s.partitioning;
     settings.machine = s.machine;
+    settings.adaptive = tess_factor_rule(s.adaptive, s.camera, s.height, s.tess_factor);
     for (DrawPass const& pass : patches.passes(settings)) {
         GraphicsPipelineDesc desc = pass.pipeline.desc();
         if (replace)
             if (auto const other = replace(pass)) desc.domain_shader = other;
+        std::map<std::vector<std::uint32_t>, std::vector<char>> outlines; // by pattern
         auto const visit = [&](ShadedPatch const& patch) {
             PatchOrigin const& origin = pass.patches[patch.primitive_id];
             auto const face = mesh.face(origin.face);
             int const n = origin.sides;
             auto const vertex = [&](int i) { return face[std::size_t((i + origin.rotation) % n)]; };
             auto const& tess = patch.points->patch;
+            std::vector<char>& outline = outlines[tess.indices];
+            if (outline.empty()) outline = outline_of(tess);
             for (std::size_t i = 0; i < tess.points(); ++i) {
                 std::uint32_t const u = tess.u[i], v = tess.v[i], one = kFixedOne;
                 std::uint32_t const w = one - u - v;
@@ -75,8 +96,9 @@ EdgeComparison compare_edges(ControlMesh const& mesh, PatchMesh const& patches,
                     for (std::size_t c = 0; c < 6; ++c)
                         std::memcpy(&bits[c], &patch.outputs[component[c] * patch.stride + i], 4);
                     auto const [it, fresh] = seen.try_emplace({a, b, parameter}, Seen{bits});
-                    if (fresh) continue;
                     Seen& other = it->second;
+                    other.outline |= outline[i] != 0;
+                    if (fresh) continue;
                     if (!other.shared) ++out.shared_points;
                     other.shared = true;
                     bool position = false, normal = false;
@@ -99,6 +121,16 @@ EdgeComparison compare_edges(ControlMesh const& mesh, PatchMesh const& patches,
         };
         draw(GraphicsPipeline(std::move(desc)), pass.call, nullptr, visit, threads);
     }
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> patches_at;
+    for (std::size_t f = 0; f < mesh.faces(); ++f) {
+        auto const face = mesh.face(f);
+        for (std::size_t i = 0; i < face.size(); ++i)
+            ++patches_at[std::minmax(face[i], face[(i + 1) % face.size()])];
+    }
+    for (auto const& [place, point] : seen)
+        if (place.a != place.b && point.outline && !point.shared &&
+            patches_at[{place.a, place.b}] == 2)
+            ++out.lonely_points;
     return out;
 }
 

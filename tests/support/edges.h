@@ -10,6 +10,7 @@ namespace tessemu::test {
 struct EdgeComparison {
     std::size_t shared_points = 0; ///< edge points (corners included) seen by two patches or more
     std::size_t shared_edge_coordinates = 0, differing_edge_coordinates = 0; ///< without corners
+    std::size_t lonely_points = 0; ///< on an edge of two patches, of which one alone has the point
     std::size_t differing_positions = 0, differing_normals = 0; ///< points with any other bit
     std::string first_difference;
 };
