@@ -39,19 +39,10 @@ public:
             Group const& g = groups_[k];
             if (g.patches.empty()) continue;
             RingKind const& kind = scheme_.kinds[k];
-            GraphicsPipelineDesc desc;
-            desc.vertex_shader = vertex;
-            desc.hull_shader = kind.hull_program({g.offsets, g.edges, angles_}, settings);
-            desc.domain_shader = kind.domain_program(settings);
-            if (settings.pixel_shader) desc.pixel_shader = settings.pixel_shader(kind.kind);
-            desc.partitioning = settings.partitioning;
-            desc.output_primitive = OutputPrimitive::TriangleCw;
-            desc.input_control_points = kind.sides;
-            DrawCall call;
-            call.control_points = kind.sides;
-            call.set_vertices({&mesh_.positions.data()->x, mesh_.positions.size() * 3}, 3);
-            call.indices = std::span<std::uint32_t const>(g.indices);
-            out.push_back({kind.kind, GraphicsPipeline(std::move(desc)), call, g.patches});
+            out.push_back(
+                make_patch_pass(kind.kind, mesh_, kind.sides, g.indices, g.patches, vertex,
+                                kind.hull_program({g.offsets, g.edges, angles_}, settings),
+                                kind.domain_program(settings), settings));
         }
         return out;
     }

@@ -35,7 +35,6 @@ public:
           scheme_(std::move(scheme)),
           warnings_(scheme_.warnings)
     {
-        static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
         collect(topology);
         warn_of_tags(mesh_, warnings_);
     }
@@ -49,20 +48,10 @@ public:
         for (Group const& g : groups_) {
             StencilKind const& kind = scheme_.kinds[g.kind];
             if (!domain[g.kind]) domain[g.kind] = kind.domain_program(settings);
-            GraphicsPipelineDesc desc;
-            desc.vertex_shader = vertex;
-            desc.hull_shader = kind.hull_program({weights_, masks_, g.words, g.order}, settings);
-            desc.domain_shader = domain[g.kind];
-            if (settings.pixel_shader) desc.pixel_shader = settings.pixel_shader(kind.kind);
-            desc.partitioning = settings.partitioning;
-            desc.output_primitive = OutputPrimitive::TriangleCw;
-            desc.input_control_points = g.inputs;
-
-            DrawCall call;
-            call.control_points = g.inputs;
-            call.set_vertices({&mesh_.positions.data()->x, mesh_.positions.size() * 3}, 3);
-            call.indices = std::span<std::uint32_t const>(g.indices);
-            out.push_back({kind.kind, GraphicsPipeline(std::move(desc)), call, g.patches});
+            out.push_back(
+                make_patch_pass(kind.kind, mesh_, g.inputs, g.indices, g.patches, vertex,
+                                kind.hull_program({weights_, masks_, g.words, g.order}, settings),
+                                domain[g.kind], settings));
         }
         return out;
     }

@@ -52,6 +52,29 @@ FacePoint domain_to_face(PatchOrigin const& origin, float u, float v)
     }
 }
 
+DrawPass make_patch_pass(PatchKind const& kind, ControlMesh const& mesh, int control_points,
+                         std::span<std::uint32_t const> indices,
+                         std::span<PatchOrigin const> patches,
+                         std::shared_ptr<VertexProgram const> vertex,
+                         std::shared_ptr<HullProgram const> hull,
+                         std::shared_ptr<DomainProgram const> domain, PassSettings const& settings)
+{
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+    GraphicsPipelineDesc desc;
+    desc.vertex_shader = std::move(vertex);
+    desc.hull_shader = std::move(hull);
+    desc.domain_shader = std::move(domain);
+    if (settings.pixel_shader) desc.pixel_shader = settings.pixel_shader(kind);
+    desc.partitioning = settings.partitioning;
+    desc.output_primitive = OutputPrimitive::TriangleCw;
+    desc.input_control_points = control_points;
+    DrawCall call;
+    call.control_points = control_points;
+    call.set_vertices({&mesh.positions.data()->x, mesh.positions.size() * 3}, 3);
+    call.indices = indices;
+    return {kind, GraphicsPipeline(std::move(desc)), call, patches};
+}
+
 std::vector<char> hidden_faces(Topology const& topology, std::vector<std::string>& warnings)
 {
     ControlMesh const& mesh = topology.mesh();

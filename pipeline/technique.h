@@ -116,6 +116,16 @@ std::shared_ptr<DomainProgram const> projected_domain_program(PassSettings const
         settings.machine);
 }
 
+/// The pass of a patch mesh whose vertex buffer is the control mesh's positions.
+///
+/// \param indices  `control_points` for each patch; must outlive the pass
+DrawPass make_patch_pass(PatchKind const& kind, ControlMesh const& mesh, int control_points,
+                         std::span<std::uint32_t const> indices,
+                         std::span<PatchOrigin const> patches,
+                         std::shared_ptr<VertexProgram const> vertex,
+                         std::shared_ptr<HullProgram const> hull,
+                         std::shared_ptr<DomainProgram const> domain, PassSettings const& settings);
+
 /// Faces that are not drawn: the mesh's holes, and with BoundaryRule::None those at the boundary,
 /// with a warning.
 std::vector<char> hidden_faces(Topology const& topology, std::vector<std::string>& warnings);

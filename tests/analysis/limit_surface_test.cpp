@@ -5,11 +5,11 @@
 #include "analysis/limit_surface.h"
 #include "io/model.h"
 #include "tests/support/files.h"
+#include "tests/support/gzip.h"
 
 #include <gtest/gtest.h>
 
 #include <glm/geometric.hpp>
-#include <zlib.h>
 
 #include <cmath>
 #include <sstream>
@@ -31,12 +31,7 @@ TEST_P(GoldenLimit, PositionsAndNormalsAgreeWhereTheGridsMeet)
     ControlMesh const mesh = load_model(test::shared(model).string()).mesh;
     Topology const topology(mesh);
     LimitSurface const limit(topology, 2);
-    std::string text;
-    gzFile const file = gzopen(test::shared(golden).c_str(), "rb");
-    char block[1 << 16];
-    for (int n; (n = gzread(file, block, sizeof block)) > 0;) text.append(block, std::size_t(n));
-    gzclose(file);
-    std::istringstream in(text);
+    std::istringstream in(test::read_gzip(test::shared(golden)));
     std::string line;
     std::getline(in, line);
     double const diagonal = std::stod(line.substr(line.find("bbox_diag=") + 10));

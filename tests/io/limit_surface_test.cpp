@@ -4,10 +4,9 @@
 #include "io/mesh_writer.h"
 #include "io/model.h"
 #include "tests/support/files.h"
+#include "tests/support/gzip.h"
 
 #include <gtest/gtest.h>
-
-#include <zlib.h>
 
 #include <cmath>
 #include <map>
@@ -23,13 +22,8 @@ struct LimitCorners {
 
 LimitCorners read_limit(std::filesystem::path const& path, ControlMesh const& mesh)
 {
-    std::string text;
-    gzFile const file = gzopen(path.c_str(), "rb");
-    char block[1 << 16];
-    for (int n; (n = gzread(file, block, sizeof block)) > 0;) text.append(block, std::size_t(n));
-    gzclose(file);
     LimitCorners out;
-    std::istringstream in(text);
+    std::istringstream in(test::read_gzip(path));
     std::string line;
     std::getline(in, line);
     out.diagonal = std::stod(line.substr(line.find("bbox_diag=") + 10));

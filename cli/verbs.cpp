@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/verbs.h"
+
+#include "analysis/loop09_table3.h"
+#include "io/atomic_file.h"
+#include "io/image_writer.h"
+#include "io/mesh_writer.h"
+#include "io/model.h"
+#include "io/report.h"
+#include "io/result_diff.h"
+#include "io/sha256.h"
+#include "pipeline/builtin_models.h"
+#include "pipeline/frame.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+
+#include <unistd.h>
+
+namespace tessemu {
+
+namespace {
+
+class Stopwatch {
+public:
+    double seconds() const
+    {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+// On a terminal, and only once the work has lasted a second.
+class ProgressBar {
+public:
+    ~ProgressBar() { clear(); }
+    void clear()
+    {
+        if (shown_) std::fputs("\r\033[K", stderr);
+        shown_ = false;
+    }
+    void operator()(std::size_t done, std::size_t all)
+    {
+        if (!isatty(STDERR_FILENO) || clock_.seconds() < 1 || all == 0) return;
+        int const width = 40, filled = int(std::uint64_t(width) * done / all);
+        fmt::print(stderr, "\r[{}{}] {:3d} %", std::string(std::size_t(filled), '#'),
+                   std::string(std::size_t(width - filled), '.'),
+                   int(100 * std::uint64_t(done) / all));
+        std::fflush(stderr);
+        shown_ = true;
+    }
+
+private:
+    Stopwatch clock_;
+    bool shown_ = false;
+};
+
+void print_warnings(std::vector<std::string> const& warnings)
+{
+    for (std::string const& w : warnings) fmt::print(stderr, "warning: {}\n", w);
+}
+
+void write_result(std::string const& path, std::string const& json)
+{
+    if (path == "-")
+        fmt::print("{}", json);
+    else if (!path.empty())
+        write_file(path, json);
+}
+
+// A model under a scheme, and the settings that draw and export share.
+struct Job {
+    PreparedMesh prepared;
+    std::unique_ptr<PatchMesh> patches;
+    FrameSettings frame;
+    ReportHeader header;
+    double load_seconds = 0, build_seconds = 0;
+};
+
+// Errors about the mesh name the file, and the line where it is known.
+void build(Model& model, Technique const& technique,
+           std::map<std::string, double> const& parameters, PreparedMesh& prepared,
+           std::unique_ptr<PatchMesh>& patches)
+{
+    try {
+        prepared = prepare_mesh(std::move(model.mesh), technique);
+        patches = technique.build(*prepared.topology, parameters);
+    } catch (MeshError const& e) {
+        throw FormatError(model.path, model.line_of_face(e.face), e.what());
+    } catch (LimitError const& e) {
+        throw FormatError(model.path, 0, e.what());
+    }
+}
+
+Job prepare(Options const& o, std::string const& verb)
+{
+    Job job;
+    FrameSettings& f = job.frame;
+    auto const partitioning = partitioning_from_name(o.partitioning);
+    if (!partitioning)
+        throw Error("--partitioning is '" + o.partitioning +
+                    "', it must be integer, pow2, fractional_odd or fractional_even");
+    if (!(o.tess > 0 && o.tess <= kMaxTessFactor))
+        throw Error(
+            fmt::format("--tess is {}, it must be above 0 and at most {}", o.tess, kMaxTessFactor));
+    if (o.normals != "frozen" && o.normals != "true")
+        throw Error("--normals is '" + o.normals + "', it must be frozen or true");
+    f.partitioning = *partitioning;
+    f.tess_factor = float(o.tess);
+    f.true_normals = o.normals == "true";
+    f.machine = parse_machine(o);
+    f.vertex_cache = vertex_cache_from_name(o.vertex_cache);
+    Technique const& technique = find_technique(o.scheme);
+    auto const parameters = parse_parameters(o);
+
+    Stopwatch const load_clock;
+    Model model = load_model(o.model);
+    job.load_seconds = load_clock.seconds();
+    Stopwatch const build_clock;
+    build(model, technique, parameters, job.prepared, job.patches);
+    job.build_seconds = build_clock.seconds();
+
+    ReportHeader& h = job.header;
+    h.verb = verb;
+    h.inputs = {{model.name, model.sha256}};
+    h.warnings = std::move(model.warnings);
+    for (std::vector<std::string> const* more :
+         {&std::as_const(job.prepared.warnings), &job.patches->warnings()})
+        h.warnings.insert(h.warnings.end(), more->begin(), more->end());
+    print_warnings(h.warnings);
+    // Warnings of the file carry its path; a result must not.
+    std::string const prefix = o.model.substr(0, o.model.size() - model.name.size());
+    for (std::string& w : h.warnings)
+        if (!prefix.empty() && w.starts_with(prefix)) w.erase(0, prefix.size());
+    h.config = {{"scheme", o.scheme}};
+    for (SchemeParameter const& p : technique.info().parameters) {
+        auto const it = parameters.find(p.name);
+        h.config.emplace_back(p.name, it == parameters.end() ? p.default_value : it->second);
+    }
+    h.config.emplace_back("tess", o.tess);
+    h.config.emplace_back("partitioning", o.partitioning);
+    h.config.emplace_back("normals", o.normals);
+    h.config.emplace_back("contraction", o.contraction);
+    h.config.emplace_back("vertex_cache", name_of(f.vertex_cache));
+    return job;
+}
+
+void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double seconds)
+{
+    h.run = {{"threads", std::int64_t(threads.threads())},
+             {"lanes", std::int64_t(job.frame.machine.lanes)},
+             {"load_seconds", job.load_seconds},
+             {"build_seconds", job.build_seconds},
+             {"draw_seconds", seconds}};
+}
+
+std::vector<double> as_doubles(glm::vec3 v)
+{
+    return {v.x, v.y, v.z};
+}
+
+} // namespace
+
+int run_draw(Options const& o)
+{
+    if (!o.output.empty()) check_image_path(o.output);
+    auto const view = view_from_name(o.view);
+    if (!view)
+        throw Error("--view is '" + o.view +
+                    "', it must be lit, normals, patches, depth, wire or coverage");
+    auto const [width, height] = parse_size(o.size);
+    Job job = prepare(o, "draw");
+    FrameSettings& f = job.frame;
+    f.width = width;
+    f.height = height;
+    f.view = *view;
+    f.camera = parse_camera(o.camera, *job.prepared.mesh, float(width) / float(height));
+    f.cull = parse_cull(o.cull);
+    f.samples = o.samples;
+    f.adaptive = parse_tess_edge(o.tess_edge);
+    if (o.output.ends_with(".exr")) f.color_format = Format::R32G32B32A32_FLOAT;
+
+    Config& c = job.header.config;
+    c.emplace_back("width", std::int64_t(width));
+    c.emplace_back("height", std::int64_t(height));
+    c.emplace_back("tess_edge", o.tess_edge);
+    c.emplace_back("view", o.view);
+    c.emplace_back("cull", o.cull);
+    c.emplace_back("samples", std::int64_t(o.samples));
+    c.emplace_back("color_format", std::string(info(f.color_format).name));
+    c.emplace_back("camera_eye", as_doubles(f.camera.eye));
+    c.emplace_back("camera_target", as_doubles(f.camera.target));
+    c.emplace_back("camera_up", as_doubles(f.camera.up));
+    c.emplace_back("camera_focal", double(f.camera.focal));
+
+    ThreadPool const threads(o.threads);
+    ProgressBar bar;
+    Stopwatch const clock;
+    Frame const frame =
+        draw_frame(*job.patches, f, threads, [&](std::size_t n, std::size_t all) { bar(n, all); });
+    bar.clear();
+    add_run(job.header, job, threads, clock.seconds());
+    if (!o.output.empty()) write_image(frame.color, o.output);
+    if (!o.json.empty())
+        write_result(o.json, draw_report(job.header, frame.statistics, frame.color, frame.depth));
+    if (o.json != "-") fmt::print("{}", counters_table(frame.statistics));
+    return 0;
+}
+
+int run_export(Options const& o)
+{
+    Job job = prepare(o, "export");
+    job.header.config.emplace_back("weld", o.weld);
+    MeshWriter writer(o.output, o.weld);
+    ThreadPool const threads(o.threads);
+    ProgressBar bar;
+    Stopwatch const clock;
+    std::size_t all = 0, done = 0;
+    for (PatchCount const& c : job.patches->patch_counts()) all += c.patches;
+    DrawStatistics const statistics = visit_surface(
+        *job.patches, job.frame, threads, [&](DrawPass const& pass, ShadedPatch const& patch) {
+            writer.add(pass, patch);
+            if (++done % 64 == 0) bar(done, all);
+        });
+    bar.clear();
+    writer.finish();
+    add_run(job.header, job, threads, clock.seconds());
+    if (!o.json.empty()) write_result(o.json, export_report(job.header, statistics, writer));
+    if (o.json != "-")
+        fmt::print("{}: {} vertices, {} triangles\n", o.output, writer.vertices(),
+                   writer.triangles());
+    return 0;
+}
+
+int run_compare(Options const& o)
+{
+    Job job = prepare(o, "compare");
+    std::erase_if(job.header.config, [](auto const& c) {
+        return c.first == "tess" || c.first == "partitioning" || c.first == "vertex_cache";
+    });
+    job.header.config.emplace_back("level", std::int64_t(o.level));
+    ThreadPool const threads(o.threads);
+    Stopwatch const clock;
+    SurfaceComparison const c =
+        compare_with_limit(*job.prepared.topology, *job.patches, job.frame, o.level, threads);
+    add_run(job.header, job, threads, clock.seconds());
+    auto const row = [](char const* quantity, char const* measure, char const* unit,
+                        ErrorStatistics const& e) {
+        return ErrorRow{quantity, measure, unit, e.max, e.mean, e.rms, e.samples};
+    };
+    std::vector<ErrorRow> const rows{
+        row("position", "closest point, scheme to limit", "diagonal", c.to_limit),
+        row("position", "closest point, limit to scheme", "diagonal", c.from_limit),
+        row("position", "equal parameter", "diagonal", c.equal_position),
+        row("normal", "closest point, scheme to limit", "radians", c.normal_to_limit),
+        row("normal", "closest point, limit to scheme", "radians", c.normal_from_limit),
+        row("normal", "equal parameter", "radians", c.equal_normal)};
+    if (!o.json.empty()) write_result(o.json, compare_report(job.header, c.diagonal, rows));
+    if (o.json != "-") fmt::print("{}", compare_table(rows));
+    return 0;
+}
+
+int run_reproduce(Options const& o)
+{
+    if (o.reproduce != "loop09-table3")
+        throw Error("'" + o.reproduce + "' is not known; there is loop09-table3");
+    ReportHeader header{
+        "reproduce",
+        {{"name", o.reproduce}, {"level", std::int64_t(o.level)}, {"contraction", o.contraction}},
+        {},
+        {},
+        {}};
+    std::vector<ControlMesh> meshes;
+    for (std::string_view name : kLoop09Table3Models) {
+        Model model = load_model(o.models + "/" + std::string(name) + ".obj");
+        header.inputs.emplace_back(model.name, model.sha256);
+        meshes.push_back(std::move(model.mesh));
+    }
+    ThreadPool const threads(o.threads);
+    ProgressBar bar;
+    Stopwatch const clock;
+    PaperTable const table =
+        reproduce_loop09_table3(meshes, o.level, parse_machine(o), threads,
+                                [&](std::size_t n, std::size_t all) { bar(n, all); });
+    bar.clear();
+    header.run = {{"threads", std::int64_t(threads.threads())}, {"seconds", clock.seconds()}};
+    std::vector<PaperRow> rows;
+    for (PaperCell const& c : table.cells) rows.push_back({c.row, c.column, c.paper, c.ours});
+    if (!o.json.empty())
+        write_result(o.json, paper_report(header, table.title, rows, table.remarks));
+    if (o.json != "-") fmt::print("{}", paper_table(table.title, rows, table.remarks));
+    return 0;
+}
+
+int run_diff(Options const& o)
+{
+    if (!(o.tolerance >= 0))
+        throw Error(fmt::format("--tolerance is {}, it must be 0 or above", o.tolerance));
+    std::string const a = read_file(o.model), b = read_file(o.other);
+    std::vector<ResultValue> const values = diff_results(a, b, {o.model, o.other}, o.tolerance);
+    auto const input = [](std::string const& path, std::string const& text) {
+        Sha256 sha;
+        sha.add(text.data(), text.size());
+        return std::pair(path.substr(path.rfind('/') + 1), sha.hex());
+    };
+    ReportHeader const header{
+        "diff", {{"tolerance", o.tolerance}}, {input(o.model, a), input(o.other, b)}, {}, {}};
+    if (!o.json.empty()) write_result(o.json, diff_report(header, values));
+    if (o.json != "-") fmt::print("{}", diff_table(values, o.all));
+    return std::any_of(values.begin(), values.end(), [](auto const& v) { return v.differs; });
+}
+
+int run_info(Options const& o)
+{
+    Model model = load_model(o.model);
+    print_warnings(model.warnings);
+    Technique const& technique = find_technique(o.scheme);
+    ReportHeader header{
+        "info", {{"scheme", o.scheme}}, {{model.name, model.sha256}}, model.warnings, {}};
+    MeshSummary summary;
+    try {
+        summary = summarize(Topology(model.mesh));
+    } catch (MeshError const& e) {
+        throw FormatError(model.path, model.line_of_face(e.face), e.what());
+    }
+    // A mesh that the scheme refuses still has figures: the refusal becomes a warning.
+    std::vector<PatchCount> patches;
+    PreparedMesh prepared;
+    std::unique_ptr<PatchMesh> mesh;
+    std::vector<std::string> more;
+    try {
+        build(model, technique, {}, prepared, mesh);
+        patches = mesh->patch_counts();
+        more = prepared.warnings;
+        more.insert(more.end(), mesh->warnings().begin(), mesh->warnings().end());
+    } catch (FormatError const& e) {
+        more.push_back(o.scheme + " cannot draw this mesh: " + e.what());
+    }
+    print_warnings(more);
+    header.warnings.insert(header.warnings.end(), more.begin(), more.end());
+    if (!o.json.empty()) write_result(o.json, info_report(header, summary, patches));
+    if (o.json != "-") fmt::print("{}", info_table(summary, patches));
+    return 0;
+}
+
+int run_tessellate(Options const& o)
+{
+    if (!o.batch.empty()) {
+        std::string const text = o.batch == "-" ? read_file("/dev/stdin") : read_file(o.batch);
+        std::string out;
+        int line = 0;
+        std::istringstream in(text);
+        for (std::string row; std::getline(in, row);) {
+            ++line;
+            out += tessellator_answer(
+                       run_tessellator_case(parse_tessellator_case(row, o.batch, line))) +
+                   "\n";
+        }
+        if (o.output.empty())
+            fmt::print("{}", out);
+        else
+            write_file(o.output, out);
+        return 0;
+    }
+    TessellatorCase c;
+    std::string row = o.domain + " " + o.partitioning + " " + o.primitive;
+    for (double f : o.factors)
+        row += fmt::format(" {:08x}", std::bit_cast<std::uint32_t>(float(f)));
+    c = parse_tessellator_case(row, "tessellate", 0);
+    ReportHeader header{"tessellate",
+                        {{"domain", o.domain},
+                         {"partitioning", o.partitioning},
+                         {"output", o.primitive},
+                         {"factors", o.factors}},
+                        {},
+                        {},
+                        {}};
+    std::string const json = tessellate_report(header, c, run_tessellator_case(c));
+    write_result(o.output.empty() ? "-" : o.output, json);
+    return 0;
+}
+
+int run_schemes(Options const&)
+{
+    for (auto const& t : techniques()) {
+        SchemeInfo const i = t->info();
+        fmt::print("{:<18} {} section {}: {}\n", i.name, i.paper, i.section, i.summary);
+        for (SchemeParameter const& p : i.parameters)
+            fmt::print("    --set {}={:<8} {}\n", p.name, p.default_value, p.meaning);
+    }
+    return 0;
+}
+
+int run_models(Options const&)
+{
+    for (BuiltinModel const& m : builtin_models()) {
+        std::string_view about = m.obj.substr(0, m.obj.find('\n'));
+        about.remove_prefix(std::min<std::size_t>(2, about.size()));
+        fmt::print("{:<14} {}\n", m.name, about);
+    }
+    return 0;
+}
+
+} // namespace tessemu
