@@ -172,13 +172,15 @@ std::string compare_report(ReportHeader const& header, double diagonal,
     Json j = start(header);
     j["diagonal"] = diagonal;
     j["errors"] = Json::array();
+    // Without samples there is no error, which is not an error of 0.
+    auto const value = [](ErrorRow const& r, double x) { return r.samples ? Json(x) : Json(); };
     for (ErrorRow const& r : rows)
         j["errors"].push_back({{"quantity", r.quantity},
                                {"measure", r.measure},
                                {"unit", r.unit},
-                               {"max", r.max},
-                               {"mean", r.mean},
-                               {"rms", r.rms},
+                               {"max", value(r, r.max)},
+                               {"mean", value(r, r.mean)},
+                               {"rms", value(r, r.rms)},
                                {"samples", r.samples}});
     return finish(std::move(j), header, [](Sha256&) {});
 }
@@ -187,9 +189,13 @@ std::string compare_table(std::vector<ErrorRow> const& rows)
 {
     std::string out = fmt::format("{:<10} {:<31} {:<9} {:>11} {:>11} {:>11} {:>9}\n", "error",
                                   "measure", "unit", "max", "mean", "rms", "samples");
-    for (ErrorRow const& r : rows)
-        out += fmt::format("{:<10} {:<31} {:<9} {:>11.4g} {:>11.4g} {:>11.4g} {:>9}\n", r.quantity,
-                           r.measure, r.unit, r.max, r.mean, r.rms, r.samples);
+    for (ErrorRow const& r : rows) {
+        auto const value = [&](double x) {
+            return r.samples ? fmt::format("{:.4g}", x) : std::string("-");
+        };
+        out += fmt::format("{:<10} {:<31} {:<9} {:>11} {:>11} {:>11} {:>9}\n", r.quantity,
+                           r.measure, r.unit, value(r.max), value(r.mean), value(r.rms), r.samples);
+    }
     return out;
 }
 
@@ -198,13 +204,13 @@ std::string diff_report(ReportHeader const& header, std::vector<ResultValue> con
     Json j = start(header);
     j["values"] = values.size();
     j["differences"] = Json::array();
-    auto const value = [](std::string const& text) { return text.empty() ? Json() : Json::parse(text); };
+    auto const value = [](std::string const& text) {
+        return text.empty() ? Json() : Json::parse(text);
+    };
     for (ResultValue const& v : values)
         if (v.differs)
-            j["differences"].push_back({{"path", v.path},
-                                        {"a", value(v.a)},
-                                        {"b", value(v.b)},
-                                        {"relative", v.relative}});
+            j["differences"].push_back(
+                {{"path", v.path}, {"a", value(v.a)}, {"b", value(v.b)}, {"relative", v.relative}});
     return finish(std::move(j), header, [](Sha256&) {});
 }
 
