@@ -123,18 +123,20 @@ public:
     /// `facing`. The tree is in single precision, the distance is not.
     std::pair<double, Vec> find(Vec const& p, Vec const& facing) const
     {
-        Search s{&t_, p, facing, 1e300, Vec(0)};
+        Search s{&t_, p, facing, kNowhere, Vec(0)};
         RTCPointQuery query{};
         query.x = float(p.x), query.y = float(p.y), query.z = float(p.z);
         query.radius = INFINITY;
         RTCPointQueryContext context;
         rtcInitPointQueryContext(&context);
         rtcPointQuery(scene_.get(), &query, &context, &visit, &s);
+        if (s.squared == kNowhere && facing != Vec(0)) return find(p, Vec(0)); // all face away
         double const length = glm::length(s.normal);
         return {std::sqrt(s.squared), length > 0 ? s.normal / length : s.normal};
     }
 
 private:
+    static constexpr double kNowhere = 1e300;
     struct Search {
         Triangles const* t;
         Vec p;
@@ -210,12 +212,14 @@ SurfaceComparison compare_with_limit(Topology const& topology, PatchMesh const& 
     Triangles smooth;
     smooth.position = limit.positions();
     smooth.normal = limit.normals();
-    std::vector<char> hole(limit.quads().faces(), 0);
-    for (std::uint32_t f : limit.quads().holes) hole[f] = 1;
-    for (std::size_t f = 0; f < limit.quads().faces(); ++f) {
-        if (hole[f]) continue;
-        auto const q = limit.quads().face(f);
-        smooth.index.insert(smooth.index.end(), {q[0], q[1], q[2], q[0], q[2], q[3]});
+    std::vector<std::string> warnings; // the patches gave them
+    std::vector<char> const hidden = hidden_faces(topology, warnings);
+    for (std::uint32_t face = 0; face < topology.mesh().faces(); ++face) {
+        if (hidden[face]) continue;
+        for (std::size_t f = limit.first_quad(face); f < limit.first_quad(face + 1); ++f) {
+            auto const q = limit.quads().face(f);
+            smooth.index.insert(smooth.index.end(), {q[0], q[1], q[2], q[0], q[2], q[3]});
+        }
     }
     smooth.weigh();
 
@@ -244,8 +248,6 @@ SurfaceComparison compare_with_limit(Topology const& topology, PatchMesh const& 
         for (std::uint32_t i : p.points->patch.indices) scheme.index.push_back(first + i);
     });
     scheme.weigh();
-    out.triangles_of_scheme = scheme.index.size() / 3;
-    out.triangles_of_limit = smooth.index.size() / 3;
 
     // Weights are areas of the limit surface, the same for every scheme.
     Triangles same = scheme;

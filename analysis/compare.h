@@ -4,9 +4,10 @@
 // surface on its dyadic grid, where both are exact. By equal parameter a sample is compared with
 // the other surface's point of the same face and (u,v). By closest point (Metro: Cignoni, Rocchini,
 // Scopigno 1998) it is compared with the closest point of the other surface's triangles, found by
-// Embree's point query, and the normal interpolated there; triangles lie about a quarter of a
-// sample distance squared times the curvature inside a curved surface, which the distance includes.
-// Samples weigh as the area around them.
+// Embree's point query, and the normal interpolated there. Triangles that face away from the sample
+// are another sheet of a thin part and are passed over. A triangle of length h lies up to h^2/8
+// times the curvature inside the surface, which the distance includes. Samples weigh as the area
+// around them. Faces that the mesh hides take no part.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -27,7 +28,6 @@ struct SurfaceComparison {
     ErrorStatistics to_limit, from_limit; ///< closest point: scheme's samples, limit's samples
     ErrorStatistics normal_to_limit, normal_from_limit; ///< angles there, radians
     ErrorStatistics equal_position, equal_normal;       ///< by equal parameter; quads only
-    std::size_t triangles_of_scheme = 0, triangles_of_limit = 0;
 };
 
 /// \param topology  of the mesh that `patches` was built from

@@ -84,11 +84,11 @@ LimitSurface::LimitSurface(Topology const& topology, int level) : level_(level)
     grid_start_.assign(base.faces(), kNone);
     auto const n = std::size_t(grid() + 1);
     std::size_t const descendants = std::size_t(1) << (2 * (level - 1));
+    for (std::uint32_t start : base.face_start) first_quad_.push_back(start * descendants);
     for (std::uint32_t f = 0; f < base.faces(); ++f) {
         if (base.face(f).size() != 4) continue;
         grid_start_[f] = grid_.size();
         grid_.resize(grid_.size() + n * n);
-        std::size_t const first = base.face_start[f] * descendants;
         for (std::size_t d = 0; d < 4 * descendants; ++d) {
             std::array<std::array<int, 2>, 4> c{
                 {{0, 0}, {grid(), 0}, {grid(), grid()}, {0, grid()}}};
@@ -99,7 +99,7 @@ LimitSurface::LimitSurface(Topology const& topology, int level) : level_(level)
                 };
                 c = {c[i], middle(i, after), middle(i, (i + 2) % 4), middle(before, i)};
             }
-            auto const quad = mesh_.face(first + d);
+            auto const quad = mesh_.face(first_quad_[f] + d);
             for (std::size_t k = 0; k < 4; ++k)
                 grid_[grid_start_[f] + std::size_t(c[k][1]) * n + std::size_t(c[k][0])] = quad[k];
         }

@@ -26,6 +26,8 @@ public:
     std::vector<glm::dvec3> const& positions() const { return position_; }
     std::vector<glm::dvec3> const& normals() const { return normal_; } ///< unit; 0 where undefined
     ControlMesh const& quads() const { return mesh_; }
+    /// The first quad of a base face; those of the next face follow its last.
+    std::size_t first_quad(std::uint32_t face) const { return first_quad_[face]; }
 
     /// Vertex at (i, j) / grid() of a base face that is a quad: i from corner 0 to corner 1, j from
     /// corner 0 to corner 3.
@@ -41,6 +43,7 @@ private:
     int level_;
     ControlMesh mesh_; ///< the last refinement; its own positions are rounded
     std::vector<glm::dvec3> position_, normal_;
+    std::vector<std::size_t> first_quad_; ///< base faces + 1
     std::vector<std::size_t> grid_start_; ///< by base face
     std::vector<std::uint32_t> grid_;
 };

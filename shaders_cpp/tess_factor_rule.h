@@ -45,7 +45,7 @@ struct TessFactorRule {
     }
 
     /// Of a cubic: the length of its control polygon stands for its own, the distance is that of
-    /// its middle. \cost 16 mul, 1 div, 4 sqrt
+    /// its middle. \cost 19 mul, 1 div, 4 sqrt
     template <class T>
     T edge_factor(float3<T> const& p0, float3<T> const& p1, float3<T> const& p2,
                   float3<T> const& p3) const

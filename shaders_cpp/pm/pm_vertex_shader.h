@@ -29,8 +29,9 @@ template <class Weight = float> struct PmVertexShader : RingTextures {
         return {rings.info(), entries.info(), positions.info(), constants.info()};
     }
 
-    /// \cost  per face 9 mul for h_j, 3 for g_j, 6 for A and B, 6 for t_j, and 3 in a triangle for
-    ///        y_j; 9 for p and 6 for the normal
+    /// \cost  21n + 18 mul, and 3 more for each triangle of the ring: per face 6 for h_j, 3 for
+    /// g_j, 6
+    ///        for A and B, 6 for t_j; 3 for 4v, 9 for p, 6 for the normal
     template <class T>
     RingVertex<T> operator()(VertexInput<T> const& in, ControlVertex<T> const& stream) const
     {

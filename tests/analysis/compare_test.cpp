@@ -53,6 +53,18 @@ TEST(Compare, SeesAChangedScheme)
     EXPECT_GT(b, 2 * a);
 }
 
+// Faces that are not drawn are not compared: a hole in a regular surface leaves no error behind.
+TEST(Compare, HiddenFacesTakeNoPart)
+{
+    auto const j =
+        nlohmann::json::parse(test::read_text(test::golden("loop09/torus_regular.json")));
+    ControlMesh mesh = test::mesh_from(j);
+    mesh.holes = {0, 7};
+    SurfaceComparison const c = compare(std::move(mesh), "gregory-stencil", 3);
+    EXPECT_EQ(c.equal_position.samples, 28u * 81);
+    EXPECT_LE(c.from_limit.max, 60 * 0x1p-24);
+}
+
 TEST(Compare, ResultsDoNotDependOnThreadsOrLanes)
 {
     auto const j = nlohmann::json::parse(test::read_text(test::golden("loop09/house.json")));

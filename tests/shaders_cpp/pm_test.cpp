@@ -3,6 +3,7 @@
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/tally.h"
+#include "pipeline/frame.h"
 #include "pipeline/pm_technique.h"
 #include "shaders_cpp/pm/pm_patch.h"
 #include "shaders_cpp/pm/pm_vertex_shader.h"
@@ -204,6 +205,26 @@ TEST(Pm, CostsAreThoseOfTheSheet)
 {
     EXPECT_EQ(cost<4>(), (std::array<std::uint64_t, 2>{232, 25}));
     EXPECT_EQ(cost<3>(), (std::array<std::uint64_t, 2>{232, 19}));
+}
+
+// 21n + 18 a vertex, 3 more for each triangle: 4 vertices of 3 triangles, 8 of 3 quads.
+TEST(Pm, VertexShaderCostsWhatItsDocumentationSays)
+{
+    for (auto const& [name, mul] :
+         {std::pair{"tetrahedron", 4 * (21 * 3 + 18 + 9)}, {"cube", 8 * (21 * 3 + 18)}}) {
+        Json const j =
+            Json::parse(test::read_text(test::golden(std::string("loop09/") + name + ".json")));
+        ControlMesh const mesh = test::mesh_from(j);
+        Topology const topology(mesh);
+        FrameSettings settings;
+        settings.vertex_cache.kind = VertexCacheModel::Kind::Infinite;
+        DrawStatistics const s =
+            visit_surface(*make_pm_technique()->build(topology, {}), settings, ThreadPool(1), {});
+        for (StageStatistics const& stage : s.stages)
+            if (stage.stage == "vertex_shader") {
+                EXPECT_EQ(flops_loop10(stage.flops), std::uint64_t(mul)) << name;
+            }
+    }
 }
 
 TEST(Pm, RefusesABoundary)
