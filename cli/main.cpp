@@ -26,6 +26,22 @@ void add_surface_options(CLI::App& verb, Options& o)
     verb.add_option("--contraction", o.contraction,
                     "products that feed sums: none, all, mixed:SEED")
         ->capture_default_str();
+    verb.add_option("--displace", o.displace,
+                    "along the normal: studs, a pattern in space; or an image on the mesh's "
+                    "texture coordinates; or none")
+        ->capture_default_str();
+    verb.add_option("--displace-scale", o.displace_scale,
+                    "displacement of a white texel, in the model's units [0.01 of its diagonal]");
+    verb.add_option("--animate", o.animate,
+                    "sway: bones along the model's longest side, bent by a wave; or none")
+        ->capture_default_str();
+    verb.add_option("--phase", o.phase, "where the motion begins, in periods")
+        ->capture_default_str();
+    verb.add_option("--direct3d", o.direct3d,
+                    "11: hull shader, tessellator, domain shader; 10: geometry shader, stream "
+                    "output, instances (LOOP09 5)")
+        ->check(CLI::IsMember({10, 11}))
+        ->capture_default_str();
     verb.add_option("--vertex-cache", o.vertex_cache, "none, fifo:N, lru:N, infinite")
         ->capture_default_str();
     verb.add_option("--lanes", o.lanes, "4, 8 or 16; changes no result")->capture_default_str();
@@ -58,7 +74,9 @@ int main(int argc, char** argv)
         "draw", "draw a control mesh and count what every stage does",
         "  tessemu draw jug -o jug.png\n"
         "  tessemu draw cage.obj --tess 16 --view patches -o patches.png --json counters.json\n"
-        "  tessemu draw cage.obj --camera from=1,0.5,0 --size 1920x1080 -o side.exr",
+        "  tessemu draw cage.obj --camera from=1,0.5,0 --size 1920x1080 -o side.exr\n"
+        "  tessemu draw jug --tess 32 --displace studs -o studs.png\n"
+        "  tessemu draw jug --animate sway --frames 12 -o sway.png --json sway.json",
         run_draw);
     draw->add_option("MODEL", o.model, "OBJ file or built-in cage, see 'tessemu models'")
         ->required();
@@ -76,6 +94,9 @@ int main(int argc, char** argv)
             "--tess-edge", o.tess_edge,
             "factors edge by edge: pixels=P, segments of about P pixels; distance=D, --tess "
             "at distance D and falling with it; none: --tess everywhere")
+        ->capture_default_str();
+    draw->add_option("--frames", o.frames,
+                     "pictures of one period of the motion, numbered: NAME_0000.png and so on")
         ->capture_default_str();
     draw->add_option("--samples", o.samples, "1, 2, 4 or 8 samples a pixel, resolved")
         ->check(CLI::IsMember({1, 2, 4, 8}))

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/options.h"
 
+#include "io/image_reader.h"
+
 #include <fmt/format.h>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 #include <cmath>
 
@@ -60,7 +65,8 @@ std::pair<int, int> parse_size(std::string const& text)
     return {out[0], out[1]};
 }
 
-Camera parse_camera(std::string const& text, ControlMesh const& mesh, float width_over_height)
+Camera parse_camera(std::string const& text, std::span<glm::vec3 const> points,
+                    float width_over_height)
 {
     glm::vec3 from(0.5f, 0.5f, 1.0f);
     std::optional<glm::vec3> eye, target, up;
@@ -87,14 +93,14 @@ Camera parse_camera(std::string const& text, ControlMesh const& mesh, float widt
     }
     if (from.x == 0 && from.y == 0 && from.z == 0)
         throw Error("--camera: from=0,0,0 is no direction");
-    Camera camera = frame_points(mesh.positions, from, width_over_height);
+    Camera camera = frame_points(points, from, width_over_height);
     if (target) camera.target = *target;
     if (eye) camera.eye = *eye;
     if (up) camera.up = *up;
     if (focal) camera.focal = *focal;
     if (!(camera.focal > 0)) throw Error("--camera: focal must be above 0");
     if (camera.eye == camera.target) throw Error("--camera: eye and target are the same point");
-    if (eye || target) fit_depth_range(camera, mesh.positions);
+    if (eye || target) fit_depth_range(camera, points);
     return camera;
 }
 
@@ -139,6 +145,49 @@ AdaptiveFactors parse_tess_edge(std::string const& text)
         throw Error(fmt::format("--tess-edge: {} is {}, it must be above 0", key, value));
     return {key == "pixels" ? AdaptiveFactors::Kind::Pixels : AdaptiveFactors::Kind::Distance,
             float(value)};
+}
+
+std::shared_ptr<Displacement const> parse_displacement(Options const& o, Topology const& topology)
+{
+    if (o.displace == "none") {
+        if (o.displace_scale) throw Error("--displace-scale needs --displace");
+        return {};
+    }
+    glm::vec3 low(INFINITY), high(-INFINITY);
+    for (glm::vec3 const& p : topology.mesh().positions) low = min(low, p), high = max(high, p);
+    float const diagonal = glm::length(high - low);
+    float const scale = o.displace_scale ? float(*o.displace_scale) : 0.01f * diagonal;
+    if (!std::isfinite(scale))
+        throw Error(fmt::format("--displace-scale is {}, it must be a finite number", scale));
+    if (o.displace == "studs")
+        return std::make_shared<Displacement>(Displacement::studs(diagonal / 16, scale));
+    HeightImage const image = read_height_image(o.displace);
+    try {
+        return std::make_shared<Displacement>(topology, image, scale);
+    } catch (Error const& e) {
+        throw Error(o.model + ": " + e.what());
+    }
+}
+
+std::vector<FramePose> parse_frames(Options const& o, ControlMesh const& mesh)
+{
+    if (o.animate != "none" && o.animate != "sway")
+        throw Error("--animate is '" + o.animate + "', it must be none or sway");
+    if (o.frames < 1 || o.frames > 10000)
+        throw Error(fmt::format("--frames is {}, it must be 1 to 10000", o.frames));
+    if (!std::isfinite(o.phase))
+        throw Error(fmt::format("--phase is {}, it must be a finite number", o.phase));
+    if (o.animate == "none") {
+        if (o.frames > 1 || o.phase != 0) throw Error("--frames and --phase need --animate");
+        return {{}};
+    }
+    SpineRig const rig(mesh);
+    std::vector<FramePose> out;
+    for (int i = 0; i < o.frames; ++i) {
+        double const phase = o.phase + double(i) / o.frames;
+        out.push_back({phase, std::make_shared<Pose>(rig.sway(phase))});
+    }
+    return out;
 }
 
 CullMode parse_cull(std::string const& text)

@@ -12,25 +12,35 @@ struct Options {
     std::string scheme = "gregory-stencil", partitioning = "fractional_odd", size = "1024x1024";
     std::string camera = "auto", view = "lit", normals = "frozen", contraction = "none",
                 cull = "none";
-    std::string vertex_cache = "fifo:16", tess_edge = "none";
+    std::string vertex_cache = "fifo:16", tess_edge = "none", displace = "none", animate = "none";
     std::string reproduce, models = ".";
     std::string domain = "quad", primitive = "triangle_cw", batch;
     std::vector<double> factors;
     std::vector<std::string> set;
     std::string other;
-    double tess = 8, tolerance = 0;
-    int lanes = kNativeLanes, threads = 0, samples = 1, level = 4;
+    double tess = 8, tolerance = 0, phase = 0;
+    std::optional<double> displace_scale;
+    int lanes = kNativeLanes, threads = 0, samples = 1, level = 4, frames = 1, direct3d = 11;
     bool weld = false, all = false;
 };
 
 // Each throws Error that names the option, the value and what is allowed.
 std::pair<int, int> parse_size(std::string const& text);
 /// auto, from=X,Y,Z, or eye=X,Y,Z with target=, up=, focal=, joined by colons.
-Camera parse_camera(std::string const& text, ControlMesh const& mesh, float width_over_height);
+Camera parse_camera(std::string const& text, std::span<glm::vec3 const> points,
+                    float width_over_height);
 Machine parse_machine(Options const& o);
 std::map<std::string, double> parse_parameters(Options const& o);
 /// none, pixels=P or distance=D
 AdaptiveFactors parse_tess_edge(std::string const& text);
+/// none, studs, or the path of an image; nothing for none. May read the file.
+std::shared_ptr<Displacement const> parse_displacement(Options const& o, Topology const& topology);
+/// The poses of the frames asked for; one without a pose where nothing is animated.
+struct FramePose {
+    double phase = 0;
+    std::shared_ptr<Pose const> pose;
+};
+std::vector<FramePose> parse_frames(Options const& o, ControlMesh const& mesh);
 CullMode parse_cull(std::string const& text);
 
 } // namespace tessemu

@@ -78,6 +78,7 @@ struct Job {
     std::unique_ptr<PatchMesh> patches;
     FrameSettings frame;
     ReportHeader header;
+    std::vector<FramePose> poses;
     double load_seconds = 0, build_seconds = 0;
 };
 
@@ -123,10 +124,17 @@ Job prepare(Options const& o, std::string const& verb)
     Stopwatch const build_clock;
     build(model, technique, parameters, job.prepared, job.patches);
     job.build_seconds = build_clock.seconds();
+    f.displacement = parse_displacement(o, *job.prepared.topology);
+    f.direct3d10 = o.direct3d == 10;
+    job.poses = parse_frames(o, *job.prepared.mesh);
+    f.pose = job.poses[0].pose;
 
     ReportHeader& h = job.header;
     h.verb = verb;
     h.inputs = {{model.name, model.sha256}};
+    if (std::filesystem::is_regular_file(o.displace))
+        h.inputs.emplace_back(std::filesystem::path(o.displace).filename().string(),
+                              sha256_of(read_file(o.displace)));
     h.warnings = std::move(model.warnings);
     for (std::vector<std::string> const* more :
          {&std::as_const(job.prepared.warnings), &job.patches->warnings()})
@@ -146,6 +154,12 @@ Job prepare(Options const& o, std::string const& verb)
     h.config.emplace_back("normals", o.normals);
     h.config.emplace_back("contraction", o.contraction);
     h.config.emplace_back("vertex_cache", name_of(f.vertex_cache));
+    std::filesystem::path const image = o.displace;
+    if (o.direct3d != 11) h.config.emplace_back("direct3d", std::int64_t(o.direct3d));
+    h.config.emplace_back("displace", image.filename().string());
+    if (f.displacement) h.config.emplace_back("displace_scale", double(f.displacement->scale()));
+    h.config.emplace_back("animate", o.animate);
+    if (o.animate != "none") h.config.emplace_back("phase", o.phase);
     return job;
 }
 
@@ -156,6 +170,28 @@ void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double 
              {"load_seconds", job.load_seconds},
              {"build_seconds", job.build_seconds},
              {"draw_seconds", seconds}};
+}
+
+// All that the frames will show, about.
+std::vector<glm::vec3> points_to_show(Job const& job)
+{
+    std::vector<glm::vec3> points;
+    std::vector<glm::vec3> const& rest = job.prepared.mesh->positions;
+    for (FramePose const& f : job.poses)
+        for (std::size_t v = 0; v < rest.size(); ++v)
+            points.push_back(f.pose ? f.pose->posed(v, rest[v]) : rest[v]);
+    if (float const d = job.frame.displacement ? job.frame.displacement->scale() : 0; d > 0)
+        for (std::size_t i = 0, n = points.size(); i < n; ++i)
+            for (float s : {-d, d}) points.push_back(points[i] + glm::vec3(s));
+    return points;
+}
+
+// NAME_0007.png of NAME.png
+std::string numbered(std::string const& path, std::size_t i)
+{
+    std::filesystem::path p = path;
+    p.replace_filename(fmt::format("{}_{:04}{}", p.stem().string(), i, p.extension().string()));
+    return p.string();
 }
 
 std::vector<double> as_doubles(glm::vec3 v)
@@ -178,7 +214,7 @@ int run_draw(Options const& o)
     f.width = width;
     f.height = height;
     f.view = *view;
-    f.camera = parse_camera(o.camera, *job.prepared.mesh, float(width) / float(height));
+    f.camera = parse_camera(o.camera, points_to_show(job), float(width) / float(height));
     f.cull = parse_cull(o.cull);
     f.samples = o.samples;
     f.adaptive = parse_tess_edge(o.tess_edge);
@@ -197,13 +233,29 @@ int run_draw(Options const& o)
     c.emplace_back("camera_up", as_doubles(f.camera.up));
     c.emplace_back("camera_focal", double(f.camera.focal));
 
+    if (o.frames > 1) c.emplace_back("frames", std::int64_t(o.frames));
     ThreadPool const threads(o.threads);
     ProgressBar bar;
     Stopwatch const clock;
-    Frame const frame =
-        draw_frame(*job.patches, f, threads, [&](std::size_t n, std::size_t all) { bar(n, all); });
+    Frame frame(f);
+    std::vector<SequenceFrame> sequence;
+    for (std::size_t i = 0; i < job.poses.size(); ++i) {
+        f.pose = job.poses[i].pose;
+        draw_frame(*job.patches, f, threads, frame, [&](std::size_t n, std::size_t all) {
+            bar(i * all + n, job.poses.size() * all);
+        });
+        if (job.poses.size() == 1) break;
+        sequence.push_back({job.poses[i].phase, f.pose->bytes(), frame.statistics,
+                            sha256_of_targets(frame.color, frame.depth)});
+        if (!o.output.empty()) write_image(frame.color, numbered(o.output, i));
+    }
     bar.clear();
     add_run(job.header, job, threads, clock.seconds());
+    if (!sequence.empty()) {
+        if (!o.json.empty()) write_result(o.json, sequence_report(job.header, sequence));
+        if (o.json != "-") fmt::print("{}", sequence_table(sequence));
+        return 0;
+    }
     if (!o.output.empty()) write_image(frame.color, o.output);
     if (!o.json.empty())
         write_result(o.json, draw_report(job.header, frame.statistics, frame.color, frame.depth));
@@ -240,7 +292,8 @@ int run_compare(Options const& o)
 {
     Job job = prepare(o, "compare");
     std::erase_if(job.header.config, [](auto const& c) {
-        return c.first == "tess" || c.first == "partitioning" || c.first == "vertex_cache";
+        return c.first == "tess" || c.first == "partitioning" || c.first == "vertex_cache" ||
+               c.first == "displace" || c.first == "animate";
     });
     job.header.config.emplace_back("level", std::int64_t(o.level));
     ThreadPool const threads(o.threads);
@@ -303,9 +356,7 @@ int run_diff(Options const& o)
     std::string const a = read_file(o.model), b = read_file(o.other);
     std::vector<ResultValue> const values = diff_results(a, b, {o.model, o.other}, o.tolerance);
     auto const input = [](std::string const& path, std::string const& text) {
-        Sha256 sha;
-        sha.add(text.data(), text.size());
-        return std::pair(path.substr(path.rfind('/') + 1), sha.hex());
+        return std::pair(path.substr(path.rfind('/') + 1), sha256_of(text));
     };
     ReportHeader const header{
         "diff", {{"tolerance", o.tolerance}}, {input(o.model, a), input(o.other, b)}, {}, {}};

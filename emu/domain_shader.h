@@ -13,12 +13,23 @@
 //             ControlPoints<PatchConstant<T>> const&) const;
 //     };
 //
+// One whose Output has no position yet is finished by an epilog: the end of the shader, compiled
+// apart from it (as drivers do), so that a surface compiled once serves every kind of vertex:
+//
+//     struct E {
+//         template <class T> using Input = ...;          // record; the domain shader's Output
+//         template <class T> using Output = ...;         // record; first member float4<T> position
+//         template <class T> Output<T> operator()(DomainInput<T> const&, Input<T> const&) const;
+//     };
+//
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "emu/machine.h"
 #include "emu/statistics.h"
 #include "emu/tessellator.h"
+
+#include <algorithm>
 
 namespace tessemu {
 
@@ -29,6 +40,8 @@ template <class T> struct DomainInput {
     std::int32_t primitive_id = 0;
 };
 
+class DomainEpilog;
+
 struct DomainBatch {
     float const* control_points;
     float const* patch_constants;
@@ -38,6 +51,18 @@ struct DomainBatch {
     std::size_t points;
     float* outputs; ///< out: component k of point i at [k * stride + i], whole groups are written
     std::size_t stride;
+    DomainEpilog const* epilog = nullptr; ///< turns the outputs into others in place
+};
+
+/// The end of a domain shader.
+class DomainEpilog {
+public:
+    virtual ~DomainEpilog() = default;
+    virtual int input_floats() const = 0;
+    virtual OutputLayout output() const = 0;
+    virtual std::vector<ResourceInfo> resources() const = 0;
+    /// Points `first` to `first + count - 1` of a batch; `first` is a multiple of the lanes.
+    virtual void run(DomainBatch const& batch, std::size_t first, std::size_t count) const = 0;
 };
 
 class DomainProgram {
@@ -58,11 +83,31 @@ public:
     virtual std::uint64_t seed() const = 0;
 };
 
+namespace detail {
+/// `left` points are yet to run.
+template <class T> void begin_domain_group(std::size_t left)
+{
+    constexpr std::size_t N = lanes_of<T>;
+    execution.activate(left >= N ? (1u << N) - 1 : (1u << left) - 1);
+    if constexpr (ScalarTraits<T>::kSites) site_state.scope = site_state.next = 0;
+}
+template <class T, TessellatorDomain kDomain>
+DomainInput<T> domain_input(DomainBatch const& b, std::size_t first)
+{
+    constexpr int N = lanes_of<T>;
+    Lanes<N> const u = Lanes<N>::load(b.u + first), v = Lanes<N>::load(b.v + first);
+    Lanes<N> w(0.0f);
+    if constexpr (kDomain == TessellatorDomain::Tri) w = Lanes<N>(1.0f) - u - v;
+    return {T(u), T(v), T(w), b.primitive_id};
+}
+} // namespace detail
+
 template <class Shader, class T> class DomainProgramOn final : public DomainProgram {
     static constexpr int N = lanes_of<T>;
     using Point = typename Shader::template ControlPoint<T>;
     using Constant = typename Shader::template PatchConstant<T>;
     using Output = typename Shader::template Output<T>;
+    static constexpr std::size_t kBlock = 256; // points that an epilog finds in the nearest cache
 
 public:
     DomainProgramOn(Shader const& shader, std::uint64_t seed) : shader_(shader), seed_(seed) {}
@@ -84,20 +129,19 @@ public:
     {
         ControlPoints<Point> const points(b.control_points, Shader::kControlPoints);
         ControlPoints<Constant> const constants(b.patch_constants, patch_constants);
-        for (std::size_t first = 0; first < b.points; first += N) {
-            std::size_t const left = b.points - first;
-            execution.activate(left >= std::size_t(N) ? (1u << N) - 1 : (1u << left) - 1);
-            if constexpr (ScalarTraits<T>::kSites) site_state.scope = site_state.next = 0;
-            Lanes<N> const u = Lanes<N>::load(b.u + first), v = Lanes<N>::load(b.v + first);
-            Lanes<N> w(0.0f);
-            if constexpr (Shader::kDomain == TessellatorDomain::Tri) w = Lanes<N>(1.0f) - u - v;
-            Output const out =
-                shader_(DomainInput<T>{T(u), T(v), T(w), b.primitive_id}, points, constants);
-            float* at = b.outputs + first;
-            for_each_scalar(out, [&](auto const& s) {
-                lanes_value(s).store(at);
-                at += b.stride;
-            });
+        for (std::size_t block = 0; block < b.points; block += kBlock) {
+            std::size_t const end = std::min(block + kBlock, b.points);
+            for (std::size_t first = block; first < end; first += N) {
+                detail::begin_domain_group<T>(end - first);
+                Output const out =
+                    shader_(detail::domain_input<T, Shader::kDomain>(b, first), points, constants);
+                float* at = b.outputs + first;
+                for_each_scalar(out, [&](auto const& s) {
+                    lanes_value(s).store(at);
+                    at += b.stride;
+                });
+            }
+            if (b.epilog) b.epilog->run(b, block, end - block);
         }
         counters.invocations += b.points;
         counters.input_fetches += points.fetches();
@@ -116,5 +160,52 @@ std::unique_ptr<DomainProgram> make_domain_program(Shader const& shader, Machine
 {
     return make_program<DomainProgramOn, DomainProgram>(shader, machine);
 }
+
+template <class Shader, class T> class DomainEpilogOn final : public DomainEpilog {
+    static constexpr std::size_t N = lanes_of<T>;
+    using Input = typename Shader::template Input<T>;
+    using Output = typename Shader::template Output<T>;
+
+public:
+    DomainEpilogOn(Shader const& shader, std::uint64_t) : shader_(shader) {}
+    int input_floats() const override { return scalar_count<Input>(); }
+    OutputLayout output() const override { return output_layout<Output>(); }
+    std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
+
+    void run(DomainBatch const& b, std::size_t begin, std::size_t count) const override
+    {
+        for (std::size_t first = begin; first < begin + count; first += N) {
+            detail::begin_domain_group<T>(begin + count - first);
+            float* at = b.outputs + first;
+            Input input{};
+            for_each_scalar(input, [&](auto& s) {
+                s = T(Lanes<int(N)>::load(at));
+                at += b.stride;
+            });
+            at = b.outputs + first;
+            // An epilog knows of u and v; w is the domain's own affair.
+            Output const out =
+                shader_(detail::domain_input<T, TessellatorDomain::Quad>(b, first), input);
+            for_each_scalar(out, [&](auto const& s) {
+                lanes_value(s).store(at);
+                at += b.stride;
+            });
+        }
+    }
+
+private:
+    Shader shader_;
+};
+
+template <class Shader>
+std::unique_ptr<DomainEpilog> make_domain_epilog(Shader const& shader, Machine const& machine)
+{
+    return make_program<DomainEpilogOn, DomainEpilog>(shader, machine);
+}
+
+/// A domain shader and its epilog, for the same machine and with slots of their own. Throws Error
+/// if the epilog does not take what the shader gives.
+std::shared_ptr<DomainProgram const> with_epilog(std::shared_ptr<DomainProgram const> shader,
+                                                 std::shared_ptr<DomainEpilog const> epilog);
 
 } // namespace tessemu

@@ -32,9 +32,7 @@ Model load_model(std::string const& path_or_name)
     out.face_lines = std::move(obj.face_lines);
     out.warnings = std::move(obj.warnings);
     out.path = path_or_name;
-    Sha256 hash;
-    hash.add(text.data(), text.size());
-    out.sha256 = hash.hex();
+    out.sha256 = sha256_of(text);
     return out;
 }
 

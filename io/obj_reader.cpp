@@ -89,6 +89,9 @@ struct Scan {
     std::vector<int> vertex_line, face_line;
     std::vector<std::uint32_t> vertices_before_face;
     std::vector<std::uint32_t> face_corners;
+    std::vector<std::uint32_t> coordinates_before_face;
+    std::size_t coordinates = 0, corners_with_coordinates = 0;
+    bool coordinates_fail = false; ///< said so
     std::vector<Tag> tags;
 };
 
@@ -152,13 +155,15 @@ private:
         line.remove_prefix(start);
         bool const spaced = line.size() > 1 && (line[1] == ' ' || line[1] == '\t');
         bool const alone = line.size() == 1;
-        if (line[0] == 'v' && (spaced || alone))
+        if (line.starts_with("vt ") || line.starts_with("vt\t"))
+            coordinates(line, number);
+        else if (line[0] == 'v' && (spaced || alone))
             vertex(line, number);
         else if (line[0] == 'f' && (spaced || alone))
             face(line, number);
         else if (line[0] == 't' && (spaced || alone))
             tag(line, number);
-        // Texture coordinates, normals, groups, materials and comments do not shape the surface.
+        // Normals, groups, materials and comments do not shape the surface.
     }
 
     void vertex(std::string_view line, int number)
@@ -178,6 +183,18 @@ private:
         scan.vertex_line.push_back(number);
     }
 
+    // A fault here leaves the mesh without texture coordinates; its surface is what it is.
+    void coordinates(std::string_view line, int number)
+    {
+        auto const words = words_of(line);
+        bool const good = words.size() >= 3 && is_decimal(words[1]) && is_decimal(words[2]);
+        if (!good && !scan.coordinates_fail)
+            warn(number, "texture coordinates are not two finite numbers: the mesh gets none");
+        scan.coordinates_fail = scan.coordinates_fail || !good;
+        scan.text += good ? fmt::format("vt {} {}\n", words[1], words[2]) : "vt 0 0\n";
+        ++scan.coordinates;
+    }
+
     void face(std::string_view line, int number)
     {
         auto const words = words_of(line);
@@ -189,12 +206,22 @@ private:
             if (!is_index_group(words[i]))
                 fail(number, fmt::format("'{}' is not a vertex index", shown(words[i])));
             scan.text += ' ';
-            scan.text += words[i].substr(0, words[i].find('/'));
+            std::string_view const group = words[i];
+            std::size_t const slash = group.find('/');
+            scan.text += group.substr(0, slash);
+            if (slash == std::string_view::npos) continue;
+            std::string_view const rest = group.substr(slash + 1);
+            std::string_view const t = rest.substr(0, rest.find('/'));
+            if (t.empty()) continue;
+            scan.text += '/';
+            scan.text += t;
+            ++scan.corners_with_coordinates;
         }
         scan.text += '\n';
         scan.face_line.push_back(number);
         scan.face_corners.push_back(std::uint32_t(words.size() - 1));
         scan.vertices_before_face.push_back(std::uint32_t(scan.vertex_line.size()));
+        scan.coordinates_before_face.push_back(std::uint32_t(scan.coordinates));
     }
 
     void tag(std::string_view line, int number)
@@ -236,7 +263,8 @@ private:
 // What the library's callbacks collect.
 struct Parsed {
     std::vector<glm::vec3> positions;
-    std::vector<int> indices;
+    std::vector<glm::vec2> coordinates;
+    std::vector<int> indices, coordinate_indices;
     std::vector<std::uint32_t> corners;
 };
 
@@ -248,9 +276,15 @@ Parsed parse_with_tinyobj(std::string const& text, std::string const& name)
                             tinyobj::real_t) {
         static_cast<Parsed*>(user)->positions.emplace_back(x, y, z);
     };
+    callback.texcoord_cb = [](void* user, tinyobj::real_t x, tinyobj::real_t y, tinyobj::real_t) {
+        static_cast<Parsed*>(user)->coordinates.emplace_back(x, y);
+    };
     callback.index_cb = [](void* user, tinyobj::index_t* indices, int count) {
         auto* p = static_cast<Parsed*>(user);
-        for (int i = 0; i < count; ++i) p->indices.push_back(indices[i].vertex_index);
+        for (int i = 0; i < count; ++i) {
+            p->indices.push_back(indices[i].vertex_index);
+            p->coordinate_indices.push_back(indices[i].texcoord_index);
+        }
         p->corners.push_back(std::uint32_t(count));
     };
     std::istringstream in(text);
@@ -258,6 +292,31 @@ Parsed parse_with_tinyobj(std::string const& text, std::string const& name)
     if (!tinyobj::LoadObjWithCallback(in, callback, &parsed, nullptr, &warning, &error))
         throw FormatError(name, 0, error.empty() ? "cannot be parsed" : error);
     return parsed;
+}
+
+// All corners get texture coordinates, or none does.
+template <class Warn>
+void assign_coordinates(Scan const& scan, Parsed const& parsed, ControlMesh& mesh, Warn const& warn)
+{
+    auto const all = std::int64_t(parsed.coordinates.size());
+    std::size_t at = 0;
+    for (std::size_t f = 0; f < parsed.corners.size(); ++f)
+        for (std::uint32_t i = 0; i < parsed.corners[f]; ++i, ++at) {
+            std::int64_t const index = parsed.coordinate_indices[at];
+            std::int64_t const c = index < 0 ? scan.coordinates_before_face[f] + index : index - 1;
+            if (c < 0 || c >= all) {
+                warn(scan.face_line[f],
+                     index == 0
+                         ? std::string("a corner has no texture coordinates: the mesh gets none")
+                         : fmt::format("texture index is {}, the file has {}: the mesh gets no "
+                                       "texture coordinates",
+                                       index, all));
+                mesh.face_coordinates.clear();
+                return;
+            }
+            mesh.face_coordinates.push_back(std::uint32_t(c));
+        }
+    mesh.coordinates = parsed.coordinates;
 }
 
 } // namespace
@@ -316,6 +375,9 @@ ObjFile read_obj(std::string_view text, std::string const& name)
                               fmt::format("face names vertex {} twice", *it + 1));
         mesh.add_face(face);
     }
+
+    if (scan.coordinates > 0 && scan.corners_with_coordinates > 0 && !scan.coordinates_fail)
+        assign_coordinates(scan, parsed, mesh, warn);
 
     auto const vertices = int(mesh.positions.size()), faces = int(mesh.faces());
     for (Tag const& t : scan.tags) {

@@ -24,8 +24,10 @@ struct ObjFile {
 /// stay within a 32-bit float.
 inline constexpr float kMaxCoordinate = 1e9f;
 
-/// Reads v, f and t statements; everything else is skipped (unknown tags with a warning). Vertices
-/// that no face uses stay. Accepts Windows line ends, a byte order mark and line continuations.
+/// Reads v, vt, f and t statements; everything else is skipped (unknown tags with a warning).
+/// Vertices that no face uses stay. Where a corner's texture coordinates are missing or bad, the
+/// mesh gets none, with a warning. Accepts Windows line ends, a byte order mark and line
+/// continuations.
 ///
 /// \param name  for messages and as the mesh's name
 /// Throws FormatError with file and line for: a coordinate that is missing, not a number or

@@ -120,17 +120,67 @@ Json pairs(std::vector<std::pair<std::size_t, std::size_t>> const& entries)
 
 } // namespace
 
+namespace {
+void add_targets(Sha256& hash, ColorTarget const& color, DepthTarget const& depth)
+{
+    for (int y = 0; y < color.height(); ++y) hash.add(color.texel(0, y), color.row_bytes());
+    std::size_t const codes = std::size_t(depth.width()) * std::size_t(depth.samples());
+    for (int y = 0; y < depth.height(); ++y)
+        hash.add(depth.codes() + depth.index(0, y), codes * sizeof(std::uint32_t));
+}
+
+std::uint64_t fetched_bytes(DrawStatistics const& s)
+{
+    std::uint64_t n = 0;
+    for (StageStatistics const& stage : s.stages)
+        for (FetchStatistics const& f : stage.fetches) n += f.bytes;
+    return n;
+}
+} // namespace
+
 std::string draw_report(ReportHeader const& header, DrawStatistics const& statistics,
                         ColorTarget const& color, DepthTarget const& depth)
 {
     Json j = start(header);
     add_statistics(j, statistics);
-    return finish(std::move(j), header, [&](Sha256& hash) {
-        for (int y = 0; y < color.height(); ++y) hash.add(color.texel(0, y), color.row_bytes());
-        std::size_t const codes = std::size_t(depth.width()) * std::size_t(depth.samples());
-        for (int y = 0; y < depth.height(); ++y)
-            hash.add(depth.codes() + depth.index(0, y), codes * sizeof(std::uint32_t));
-    });
+    return finish(std::move(j), header, [&](Sha256& hash) { add_targets(hash, color, depth); });
+}
+
+std::string sha256_of_targets(ColorTarget const& color, DepthTarget const& depth)
+{
+    Sha256 hash;
+    add_targets(hash, color, depth);
+    return hash.hex();
+}
+
+std::string sequence_report(ReportHeader const& header, std::vector<SequenceFrame> const& frames)
+{
+    Json j = start(header);
+    j["frames"] = Json::array();
+    for (SequenceFrame const& f : frames) {
+        Json frame{{"phase", f.phase}, {"upload_bytes", f.upload_bytes}};
+        frame["fetched_bytes"] = fetched_bytes(f.statistics);
+        add_statistics(frame, f.statistics);
+        frame["target_sha256"] = f.target_sha256;
+        j["frames"].push_back(std::move(frame));
+    }
+    return finish(std::move(j), header, [](Sha256&) {});
+}
+
+std::string sequence_table(std::vector<SequenceFrame> const& frames)
+{
+    std::string out =
+        fmt::format("{:>5} {:>7} {:>13} {:>12} {:>12} {:>11} {:>13} {:>16}\n", "frame", "phase",
+                    "upload bytes", "VS runs", "CS threads", "points", "pixels", "fetched bytes");
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        SequenceFrame const& f = frames[i];
+        PipelineStatistics const& p = f.statistics.pipeline;
+        out += fmt::format("{:>5} {:>7.4f} {:>13} {:>12} {:>12} {:>11} {:>13} {:>16}\n", i, f.phase,
+                           counted(f.upload_bytes), counted(p.VSInvocations),
+                           counted(p.CSInvocations), counted(p.DSInvocations),
+                           counted(p.PSInvocations), counted(fetched_bytes(f.statistics)));
+    }
+    return out;
 }
 
 std::string export_report(ReportHeader const& header, DrawStatistics const& statistics,

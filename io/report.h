@@ -36,6 +36,18 @@ struct ReportHeader {
 std::string draw_report(ReportHeader const& header, DrawStatistics const& statistics,
                         ColorTarget const& color, DepthTarget const& depth);
 
+/// A frame of a sequence.
+struct SequenceFrame {
+    double phase = 0;
+    std::uint64_t upload_bytes = 0; ///< what an application sends for it: the pose
+    DrawStatistics statistics;
+    std::string target_sha256; ///< of colour and depth, as draw_report hashes them
+};
+std::string sha256_of_targets(ColorTarget const& color, DepthTarget const& depth);
+/// draw of several frames: "frames" with the counters of each.
+std::string sequence_report(ReportHeader const& header, std::vector<SequenceFrame> const& frames);
+std::string sequence_table(std::vector<SequenceFrame> const& frames);
+
 /// export: the same with the mesh instead of the target.
 std::string export_report(ReportHeader const& header, DrawStatistics const& statistics,
                           MeshWriter const& mesh);

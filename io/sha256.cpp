@@ -38,4 +38,11 @@ std::string Sha256::hex()
     return out;
 }
 
+std::string sha256_of(std::string const& text)
+{
+    Sha256 hash;
+    hash.add(text.data(), text.size());
+    return hash.hex();
+}
+
 } // namespace tessemu

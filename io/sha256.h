@@ -22,4 +22,7 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
+/// Of a text.
+std::string sha256_of(std::string const& text);
+
 } // namespace tessemu

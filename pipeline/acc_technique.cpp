@@ -46,7 +46,7 @@ public:
                  return stencil_hull_program<StencilHullShader<TessellatorDomain::Quad>>(
                      buffers, 16, settings);
              },
-             projected_domain_program<RegularQuadDomainShader>,
+             surface_program<RegularQuadDomainShader>,
              [=](Neighbourhood const& n) { return make_acc_stencils(n, true, smooth_corners); }},
             {{"ACC quad", kAccQuad},
              4,
@@ -54,7 +54,7 @@ public:
                  return stencil_hull_program<AccHullShader<>>(buffers, AccLayout::kCosines,
                                                               settings);
              },
-             projected_domain_program<AccQuadDomainShader>,
+             surface_program<AccQuadDomainShader>,
              [=](Neighbourhood const& n) { return make_acc_stencils(n, false, smooth_corners); }}};
         s.kind_of = [&topology](std::uint32_t face) -> std::size_t {
             return is_regular(topology, face) ? kRegularQuad : kAccQuad;

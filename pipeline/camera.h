@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "shaders_cpp/projected_surface.h"
+#include "shaders_cpp/projection.h"
 
 #include <glm/vec3.hpp>
 

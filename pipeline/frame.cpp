@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/frame.h"
 
-#include "shaders_cpp/pixel/surface_views.h"
+#include "pipeline/instanced_tessellation.h"
+#include "shaders_cpp/pixel/bumped_view.h"
 
 #include <glm/geometric.hpp>
 
@@ -32,8 +33,21 @@ std::optional<View> view_from_name(std::string_view name)
     return {};
 }
 
+namespace {
+template <class Shader>
+std::shared_ptr<PixelProgram const> on_surface(Shader const& view, Displacement const* displacement,
+                                               Machine const& machine)
+{
+    if (!displacement) return make_pixel_program(view, machine);
+    return make_pixel_program(
+        BumpedView<Shader>{view, displacement->height_map(), displacement->scale()}, machine);
+}
+} // namespace
+
 std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
-                                              Camera const& camera, Machine const& machine)
+                                              Camera const& camera,
+                                              Displacement const* displacement,
+                                              Machine const& machine)
 {
     auto const array = [](glm::vec3 v) { return std::array<float, 3>{v.x, v.y, v.z}; };
     // A key light over the viewer's left shoulder.
@@ -47,10 +61,10 @@ std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
         s.light = array(light);
         s.half = array(glm::normalize(light + camera.backward()));
         s.up = array(camera.true_up());
-        return make_pixel_program(s, machine);
+        return on_surface(s, displacement, machine);
     }
     case View::Normals:
-        return make_pixel_program(NormalPixelShader{}, machine);
+        return on_surface(NormalPixelShader{}, displacement, machine);
     case View::Patches: {
         constexpr std::array<float, 3> kColors[] = {{0.42f, 0.66f, 0.92f},
                                                     {1.0f, 0.66f, 0.28f},
@@ -59,7 +73,7 @@ std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
         PatchPixelShader s;
         s.color = kColors[std::size_t(kind.color_index) % std::size(kColors)];
         s.light = array(light);
-        return make_pixel_program(s, machine);
+        return on_surface(s, displacement, machine);
     }
     default: {
         DepthPixelShader s;
@@ -85,7 +99,6 @@ TessFactorRule tess_factor_rule(AdaptiveFactors const& adaptive, Camera const& c
     return r;
 }
 
-namespace {
 PassSettings pass_settings(FrameSettings const& s)
 {
     PassSettings p;
@@ -94,9 +107,19 @@ PassSettings pass_settings(FrameSettings const& s)
     p.partitioning = s.partitioning;
     p.machine = s.machine;
     p.true_normals = s.true_normals;
+    p.displacement = s.displacement;
+    p.pose = s.pose;
     return p;
 }
-} // namespace
+
+std::vector<DrawPass> frame_passes(PatchMesh const& mesh, FrameSettings const& s,
+                                   PassSettings const& settings)
+{
+    std::vector<DrawPass> passes = mesh.passes(settings);
+    if (s.direct3d10)
+        for (DrawPass& pass : passes) pass = instanced(std::move(pass), settings);
+    return passes;
+}
 
 Frame::Frame(FrameSettings const& s)
     : color(s.width, s.height, s.color_format),
@@ -115,7 +138,7 @@ void draw_passes(PatchMesh const& mesh, FrameSettings const& s, RasterTarget con
                  PassSettings const& settings, ThreadPool const& threads, Frame& frame,
                  DrawProgress const& progress)
 {
-    std::vector<DrawPass> const passes = mesh.passes(settings);
+    std::vector<DrawPass> const passes = frame_passes(mesh, s, settings);
     std::size_t all = 0, done = 0;
     for (DrawPass const& pass : passes) all += pass.patches.size();
     for (DrawPass const& pass : passes) {
@@ -124,7 +147,7 @@ void draw_passes(PatchMesh const& mesh, FrameSettings const& s, RasterTarget con
         options.memory = &frame.memory;
         if (progress)
             options.progress = [&](std::size_t n, std::size_t) { progress(done + n, all); };
-        frame.statistics += draw(pass.pipeline, pass.call, &raster, {}, threads, options);
+        frame.statistics += draw_pass(pass, &raster, {}, threads, options);
         done += pass.patches.size();
     }
 }
@@ -155,7 +178,7 @@ void draw_frame(PatchMesh const& mesh, FrameSettings const& s, ThreadPool const&
     PassSettings settings = pass_settings(s);
     settings.view_projection = view_projection(s.camera, float(s.width) / float(s.height));
     settings.pixel_shader = [&](PatchKind const& kind) {
-        return make_view(s.view, kind, s.camera, s.machine);
+        return make_view(s.view, kind, s.camera, s.displacement.get(), s.machine);
     };
     RasterTarget raster{{&color}, &frame.depth, {{0, 0, float(s.width), float(s.height), 0, 1}}};
     raster.rasterizer.cull = s.cull;
@@ -191,12 +214,12 @@ DrawStatistics visit_surface(PatchMesh const& mesh, FrameSettings const& s,
                              ThreadPool const& threads, SurfaceVisitor const& visit)
 {
     DrawStatistics statistics;
-    for (DrawPass const& pass : mesh.passes(pass_settings(s))) {
+    for (DrawPass const& pass : frame_passes(mesh, s, pass_settings(s))) {
         PatchVisitor visitor;
         if (visit) visitor = [&](ShadedPatch const& p) { visit(pass, p); };
         DrawOptions options;
         options.vertex_cache = s.vertex_cache;
-        statistics += draw(pass.pipeline, pass.call, nullptr, visitor, threads, options);
+        statistics += draw_pass(pass, nullptr, visitor, threads, options);
     }
     return statistics;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "pipeline/camera.h"
+#include "pipeline/displacement.h"
 #include "pipeline/technique.h"
 
 #include <optional>
@@ -16,9 +17,11 @@ std::optional<View> view_from_name(std::string_view name);
 inline constexpr View kViews[] = {View::Lit,   View::Normals, View::Patches,
                                   View::Depth, View::Wire,    View::Coverage};
 
-/// The pixel shader of a view.
+/// The pixel shader of a view; on a displaced surface normals follow the height map.
 std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
-                                              Camera const& camera, Machine const& machine);
+                                              Camera const& camera,
+                                              Displacement const* displacement,
+                                              Machine const& machine);
 
 /// Tess factors from the camera, an edge at a time.
 struct AdaptiveFactors {
@@ -43,9 +46,18 @@ struct FrameSettings {
     AdaptiveFactors adaptive; ///< instead of the uniform factor
     Partitioning partitioning = Partitioning::FractionalOdd;
     bool true_normals = false;
+    std::shared_ptr<Displacement const> displacement; ///< none: the smooth surface
+    std::shared_ptr<Pose const> pose;                 ///< none: the mesh at rest
+    bool direct3d10 = false; ///< by geometry shader and instances, see instanced_tessellation.h
     Machine machine;
     VertexCacheModel vertex_cache;
 };
+
+/// What every pass of a frame is made for; without a camera's transform and without pixel shaders.
+PassSettings pass_settings(FrameSettings const& settings);
+/// The passes of a mesh for a frame, in order.
+std::vector<DrawPass> frame_passes(PatchMesh const& mesh, FrameSettings const& settings,
+                                   PassSettings const& pass);
 
 /// A picture and what it took. Its memory serves frame after frame.
 struct Frame {

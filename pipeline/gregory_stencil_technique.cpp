@@ -20,7 +20,7 @@ StencilKind make_kind(char const* name, Kind k, GregoryParameters const& paramet
                 return stencil_hull_program<StencilHullShader<kDomain>>(
                     buffers, Surface::kControlPoints, settings);
             },
-            projected_domain_program<Surface>,
+            surface_program<Surface>,
             [parameters](Neighbourhood const& n) {
                 return make_gregory_stencils(n, Surface::kControlPoints == 16, parameters);
             }};

@@ -42,15 +42,15 @@ public:
         s.kinds = {{{"regular quad", kRegularQuad},
                     4,
                     sector_hull_program<SectorHullShader<kQuad, 4>>,
-                    projected_domain_program<RegularSectorsDomainShader>},
+                    surface_program<RegularSectorsDomainShader>},
                    {{"Gregory quad", kGregoryQuad},
                     4,
                     sector_hull_program<SectorHullShader<kQuad, 5>>,
-                    projected_domain_program<GregoryQuadSectorsDomainShader>},
+                    surface_program<GregoryQuadSectorsDomainShader>},
                    {{"Gregory triangle", kGregoryTriangle},
                     3,
                     sector_hull_program<SectorHullShader<kTri, 5>>,
-                    projected_domain_program<GregoryTriangleSectorsDomainShader>}};
+                    surface_program<GregoryTriangleSectorsDomainShader>}};
         s.kind_of = [&topology](std::uint32_t face) -> std::size_t {
             if (topology.mesh().face(face).size() == 3) return kGregoryTriangle;
             return is_regular(topology, face) ? kRegularQuad : kGregoryQuad;

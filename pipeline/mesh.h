@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include <cstdint>
@@ -32,8 +33,10 @@ struct ControlMesh {
 
     std::string name; ///< file name without its folder, or the built-in's name
     std::vector<glm::vec3> positions;
-    std::vector<std::uint32_t> face_start{0}; ///< faces + 1 offsets into face_vertices
-    std::vector<std::uint32_t> face_vertices; ///< counter-clockwise, from 0
+    std::vector<std::uint32_t> face_start{0};    ///< faces + 1 offsets into face_vertices
+    std::vector<std::uint32_t> face_vertices;    ///< counter-clockwise, from 0
+    std::vector<glm::vec2> coordinates;          ///< texture coordinates, v upwards
+    std::vector<std::uint32_t> face_coordinates; ///< of each face corner; empty: there are none
     std::vector<Crease> creases;
     std::vector<Corner> corners;
     std::vector<std::uint32_t> holes; ///< faces that shape the surface but are not drawn

@@ -63,15 +63,15 @@ public:
         s.kinds = {{{"regular quad", kRegularQuad},
                     4,
                     sector_hull_program<PmRegularHullShader<>>,
-                    projected_domain_program<RegularSectorsDomainShader>},
+                    surface_program<RegularSectorsDomainShader>},
                    {{"P4", kPmQuad},
                     4,
                     sector_hull_program<PmHullShader<TessellatorDomain::Quad>>,
-                    projected_domain_program<PmQuadDomainShader>},
+                    surface_program<PmQuadDomainShader>},
                    {{"P3", kPmTriangle},
                     3,
                     sector_hull_program<PmHullShader<TessellatorDomain::Tri>>,
-                    projected_domain_program<PmTriangleDomainShader>}};
+                    surface_program<PmTriangleDomainShader>}};
         s.kind_of = [&topology](std::uint32_t face) -> std::size_t {
             if (topology.mesh().face(face).size() == 3) return kPmTriangle;
             return is_regular(topology, face) ? kRegularQuad : kPmQuad;

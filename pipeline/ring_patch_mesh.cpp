@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/ring_patch_mesh.h"
 
+#include "shaders_cpp/skinning.h"
+
 namespace tessemu {
 
 namespace {
@@ -28,11 +30,15 @@ public:
 
     std::vector<DrawPass> passes(PassSettings const& settings) const override
     {
+        // At rest the texture is the mesh's; in a pose a pass before the draws fills another.
+        std::shared_ptr<std::vector<float>> moved;
+        if (settings.pose) moved = std::make_shared<std::vector<float>>(rings_.positions.size());
+        std::vector<float> const& positions = moved ? *moved : rings_.positions;
         RingTextures textures;
         textures.rings = {rings_.rings, 0, "ring_heads"};
         textures.entries = {rings_.entries, 1, "ring_entries"};
-        textures.positions = Texture2D(rings_.positions, RingTextures::kTextureWidth, rings_.height,
-                                       2, "ring_positions");
+        textures.positions =
+            Texture2D(positions, RingTextures::kTextureWidth, rings_.height, 2, "ring_positions");
         auto const vertex = scheme_.vertex_program(textures, settings);
         std::vector<DrawPass> out;
         for (std::size_t k = 0; k < groups_.size(); ++k) {
@@ -43,6 +49,11 @@ public:
                 make_patch_pass(kind.kind, mesh_, kind.sides, g.indices, g.patches, vertex,
                                 kind.hull_program({g.offsets, g.edges, angles_}, settings),
                                 kind.domain_program(settings), settings));
+            if (!moved) continue;
+            DrawPass& pass = out.back();
+            pass.call.vertex_buffers = {{std::as_bytes(std::span(*moved)), 16, 0}};
+            pass.memory.push_back(moved);
+            if (out.size() == 1) pass.prepare = skinning_pass(*settings.pose, *moved, settings);
         }
         return out;
     }
@@ -60,6 +71,21 @@ public:
     std::vector<std::string> const& warnings() const override { return warnings_; }
 
 private:
+    /// Fills the texture of moved positions.
+    std::function<DrawStatistics(ThreadPool const&, VertexCacheModel const&)>
+    skinning_pass(Pose const& pose, std::vector<float>& moved, PassSettings const& settings) const
+    {
+        SkinningComputeShader cs;
+        cs.skin = {{pose.skin->vertices, 0, "skin"}, {pose.bones, 1, "bones"}};
+        cs.rest = {{&mesh_.positions.data()->x, mesh_.positions.size() * 3}, 2, "rest_positions"};
+        cs.moved = {std::span(moved).first(mesh_.positions.size() * 4), 3, "moved_positions"};
+        std::shared_ptr<ComputeProgram const> program = make_compute_program(cs, settings.machine);
+        std::size_t const groups = (mesh_.positions.size() + 63) / 64;
+        return [program, groups](ThreadPool const& threads, VertexCacheModel const&) {
+            return dispatch(*program, {std::uint32_t(groups), 1, 1}, threads);
+        };
+    }
+
     void add_patch(Topology const& topology, std::uint32_t f)
     {
         auto const face = mesh_.face(f);

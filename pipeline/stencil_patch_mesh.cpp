@@ -2,6 +2,7 @@
 #include "pipeline/stencil_patch_mesh.h"
 
 #include "shaders_cpp/pass_through.h"
+#include "shaders_cpp/skinning.h"
 
 #include <algorithm>
 #include <numeric>
@@ -41,8 +42,7 @@ public:
 
     std::vector<DrawPass> passes(PassSettings const& settings) const override
     {
-        auto const vertex = std::shared_ptr<VertexProgram const>(
-            make_vertex_program(PassThroughVertexShader{}, settings.machine));
+        std::shared_ptr<VertexProgram const> const vertex = vertex_program(settings);
         std::vector<std::shared_ptr<DomainProgram const>> domain(scheme_.kinds.size());
         std::vector<DrawPass> out;
         for (Group const& g : groups_) {
@@ -77,6 +77,14 @@ public:
     std::vector<std::string> const& warnings() const override { return warnings_; }
 
 private:
+    static std::unique_ptr<VertexProgram> vertex_program(PassSettings const& settings)
+    {
+        if (!settings.pose) return make_vertex_program(PassThroughVertexShader{}, settings.machine);
+        return make_vertex_program(SkinningVertexShader{{{settings.pose->skin->vertices, 0, "skin"},
+                                                         {settings.pose->bones, 1, "bones"}}},
+                                   settings.machine);
+    }
+
     struct Patch {
         std::uint32_t face, type;
         std::uint8_t rotation;

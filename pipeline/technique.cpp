@@ -3,6 +3,7 @@
 
 #include "pipeline/acc_technique.h"
 #include "pipeline/catmull_clark.h"
+#include "pipeline/displacement.h"
 #include "pipeline/gregory_stencil_technique.h"
 #include "pipeline/gregory_two_stage_technique.h"
 #include "pipeline/pm_technique.h"
@@ -63,7 +64,9 @@ DrawPass make_patch_pass(PatchKind const& kind, ControlMesh const& mesh, int con
     GraphicsPipelineDesc desc;
     desc.vertex_shader = std::move(vertex);
     desc.hull_shader = std::move(hull);
-    desc.domain_shader = std::move(domain);
+    PatchEpilog epilog = make_patch_epilog(mesh, patches, settings.view_projection,
+                                           settings.displacement, settings.machine);
+    desc.domain_shader = with_epilog(std::move(domain), std::move(epilog.program));
     if (settings.pixel_shader) desc.pixel_shader = settings.pixel_shader(kind);
     desc.partitioning = settings.partitioning;
     desc.output_primitive = OutputPrimitive::TriangleCw;
@@ -72,7 +75,59 @@ DrawPass make_patch_pass(PatchKind const& kind, ControlMesh const& mesh, int con
     call.control_points = control_points;
     call.set_vertices({&mesh.positions.data()->x, mesh.positions.size() * 3}, 3);
     call.indices = indices;
-    return {kind, GraphicsPipeline(std::move(desc)), call, patches};
+    DrawPass pass{kind, GraphicsPipeline(std::move(desc)), call, patches, {}, {}, {}};
+    pass.memory = {std::move(epilog.memory), settings.pose};
+    return pass;
+}
+
+namespace {
+
+// Patches of an instanced pass: every vertex as a streamed-out point, instance after instance.
+DrawStatistics visit_instances(DrawPass const& pass, PatchVisitor const& visit,
+                               ThreadPool const& threads, DrawOptions options)
+{
+    std::size_t const points = pass.pattern->patch.points(), patches = pass.call.instance_count;
+    GraphicsPipelineDesc desc = pass.pipeline.desc();
+    auto const floats = std::size_t(desc.vertex_shader->output_floats());
+    desc.pixel_shader = {};
+    desc.stream_output.emplace();
+    desc.stream_output->rasterized_stream = -1;
+    for (std::size_t k = 0; k < floats; k += 4)
+        desc.stream_output->entries.push_back(
+            {0, std::int16_t(k), std::uint8_t(std::min<std::size_t>(4, floats - k)), 0});
+    DrawCall call = pass.call;
+    call.topology = PrimitiveTopology::PointList;
+    call.indices = {};
+    call.vertex_count = std::uint32_t(points);
+    std::vector<float> vertices(patches * points * floats), patch(points * floats);
+    StreamOutputBuffer buffer{std::as_writable_bytes(std::span(vertices)), 0};
+    options.stream_output = std::span(&buffer, 1);
+    DrawStatistics const statistics =
+        draw(GraphicsPipeline(std::move(desc)), call, nullptr, {}, threads, options);
+    for (std::size_t p = 0; p < patches; ++p) {
+        for (std::size_t i = 0; i < points; ++i)
+            for (std::size_t k = 0; k < floats; ++k)
+                patch[k * points + i] = vertices[(p * points + i) * floats + k];
+        visit({std::uint32_t(p), pass.pattern.get(), patch.data(), points});
+    }
+    return statistics;
+}
+
+} // namespace
+
+DrawStatistics draw_pass(DrawPass const& pass, RasterTarget const* raster,
+                         PatchVisitor const& visit, ThreadPool const& threads,
+                         DrawOptions const& options)
+{
+    DrawStatistics s;
+    if (pass.prepare) s += pass.prepare(threads, options.vertex_cache);
+    if (pass.pattern && visit) {
+        s += visit_instances(pass, visit, threads, options);
+        if (!raster) return s;
+    }
+    s += draw(pass.pipeline, pass.call, raster, pass.pattern ? PatchVisitor{} : visit, threads,
+              options);
+    return s;
 }
 
 std::vector<char> hidden_faces(Topology const& topology, std::vector<std::string>& warnings)

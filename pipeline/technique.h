@@ -9,13 +9,17 @@
 #pragma once
 
 #include "emu/graphics_pipeline.h"
+#include "pipeline/animation.h"
+#include "pipeline/patch_origin.h"
 #include "pipeline/topology.h"
-#include "shaders_cpp/projected_surface.h"
+#include "shaders_cpp/projection.h"
 #include "shaders_cpp/tess_factor_rule.h"
 
 #include <map>
 
 namespace tessemu {
+
+class Displacement;
 
 /// A free choice of a scheme that a user may set.
 struct SchemeParameter {
@@ -31,19 +35,6 @@ struct SchemeInfo {
     std::vector<SchemeParameter> parameters;
 };
 
-/// Where a patch comes from: its domain's corner 0 is corner `rotation` of the face.
-struct PatchOrigin {
-    std::uint32_t face = 0;
-    std::uint8_t rotation = 0, sides = 4;
-};
-
-/// A domain point in its face: quad, u from corner 0 to 1 and v from corner 0 to 3; triangle,
-/// weights of corners 0 and 1. Exact for 16-bit fractions.
-struct FacePoint {
-    float u, v;
-};
-FacePoint domain_to_face(PatchOrigin const& origin, float u, float v);
-
 /// Patches of one shape: one domain shader, one number of control points.
 struct PatchKind {
     std::string name; ///< "regular quad"
@@ -58,6 +49,8 @@ struct PassSettings {
     Machine machine;
     bool true_normals = false; ///< interior normals of the rational surface, not of frozen F
     Matrix4 view_projection = kIdentity;
+    std::shared_ptr<Displacement const> displacement; ///< none: the smooth surface
+    std::shared_ptr<Pose const> pose;                 ///< none: the mesh at rest
     /// Called once per pass; absent: rasterization is off.
     std::function<std::shared_ptr<PixelProgram const>(PatchKind const&)> pixel_shader;
 
@@ -69,13 +62,24 @@ struct PassSettings {
     }
 };
 
-/// One draw of a technique. Dispatches and stream-outs will stand beside it.
+/// One draw of a technique.
 struct DrawPass {
     PatchKind kind;
     GraphicsPipeline pipeline;
     DrawCall call; ///< views into the patch mesh, which must outlive the pass
     std::span<PatchOrigin const> patches; ///< by primitive id
+    /// Work that must come first, where there is any: a dispatch or a draw that fills buffers.
+    /// Gives what it counted.
+    std::function<DrawStatistics(ThreadPool const&, VertexCacheModel const&)> prepare;
+    std::vector<std::shared_ptr<void const>> memory; ///< what else the pass's buffers view
+    /// Of a pass that draws an instance of this pattern for each patch, without a tessellator.
+    std::shared_ptr<DomainPoints const> pattern;
 };
+
+/// Prepares and draws a pass; see draw().
+DrawStatistics draw_pass(DrawPass const& pass, RasterTarget const* raster,
+                         PatchVisitor const& visit, ThreadPool const& threads,
+                         DrawOptions const& options = {});
 
 /// Patches of one kind and type count, for `info`.
 struct PatchCount {
@@ -107,18 +111,17 @@ public:
     build(Topology const& topology, std::map<std::string, double> const& parameters) const = 0;
 };
 
-/// The scheme's surface, projected, on the settings' machine.
+/// The scheme's surface on the settings' machine; make_patch_pass gives it its epilog.
 template <class Surface>
-std::shared_ptr<DomainProgram const> projected_domain_program(PassSettings const& settings)
+std::shared_ptr<DomainProgram const> surface_program(PassSettings const& settings)
 {
-    return make_domain_program(
-        ProjectedSurface<Surface>{{settings.true_normals}, settings.view_projection},
-        settings.machine);
+    return make_domain_program(Surface{settings.true_normals}, settings.machine);
 }
 
 /// The pass of a patch mesh whose vertex buffer is the control mesh's positions.
 ///
 /// \param indices  `control_points` for each patch; must outlive the pass
+/// \param domain   gives SurfacePoints
 DrawPass make_patch_pass(PatchKind const& kind, ControlMesh const& mesh, int control_points,
                          std::span<std::uint32_t const> indices,
                          std::span<PatchOrigin const> patches,

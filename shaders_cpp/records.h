@@ -32,6 +32,16 @@ template <class T> struct ShadedVertex {
     }
 };
 
+/// v / |v|, and 0 where v is 0: a surface may have no normal at a degenerate point.
+template <class T> constexpr float3<T> unit_or_zero(float3<T> const& v)
+{
+    Routine<T> const here("unit_or_zero");
+    T const squared = dot(v, v);
+    T const length = sqrt(squared);
+    T const inverse = T(1) / select(squared > T(0), length, T(1));
+    return {T(v.x * inverse), T(v.y * inverse), T(v.z * inverse)};
+}
+
 /// Position and two tangents whose cross product is the surface normal's direction. Their common
 /// scale is the scheme's; see the function that returns them.
 template <class T> struct TangentFrame {

@@ -78,16 +78,6 @@ constexpr SurfacePoint<T> edge_point(EdgeCurve<T> const& edge, float3<T> const (
     return r;
 }
 
-/// v / |v|, and 0 where v is 0: a surface may have no normal at a degenerate point.
-template <class T> constexpr float3<T> unit_or_zero(float3<T> const& v)
-{
-    Routine<T> const here("unit_or_zero");
-    T const squared = dot(v, v);
-    T const length = sqrt(squared);
-    T const inverse = T(1) / select(squared > T(0), length, T(1));
-    return {T(v.x * inverse), T(v.y * inverse), T(v.z * inverse)};
-}
-
 /// Domain shader of a patch.
 ///
 ///     struct Inside {

@@ -94,6 +94,13 @@ TEST(Program, BadUsageExitsTwoWithOneLineThatNamesTheValue)
              {"draw jug --set sigma=2", "sigma"},
              {"draw jug --tess-edge pixel=3", "pixels=P"},
              {"draw jug --tess-edge pixels=0", "above 0"},
+             {"draw jug --displace nowhere.png", "nowhere.png"},
+             {"draw jug --displace-scale 1", "--displace"},
+             {"draw jug --animate walk", "sway"},
+             {"draw jug --frames 3", "--animate"},
+             {"draw jug --animate sway --frames 0", "--frames"},
+             {"draw jug --direct3d 9", "--direct3d"},
+             {"draw jug --direct3d 10 --tess-edge pixels=8", "adaptive"},
              {"draw jug --scheme acc", "triangles"},
              {"draw jug --scheme pm", "closed meshes only"},
              {"compare jug --level 7", "7"},
@@ -134,6 +141,56 @@ TEST(Program, DrawWritesPictureTableAndJson)
     EXPECT_EQ(c["HSControlPointInvocations"].get<int>() > 15 * c["HSInvocations"].get<int>(), true);
     EXPECT_EQ(j["stages"]["domain_shader"]["invocations"], c["DSInvocations"]);
     EXPECT_EQ(j.dump().find(scratch().string()), std::string::npos) << "a path in the result";
+}
+
+TEST(Program, DisplacesByAnImageOnTextureCoordinates)
+{
+    fs::path const cage = scratch() / "square.obj", map = scratch() / "map.exr";
+    std::ofstream(cage) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+                           "f 1/1 2/2 3/3 4/4\n";
+    ASSERT_EQ(run("draw jug --size 64x64 -o " + map.string()).status, 0);
+    Json const flat = draw_json(cage.string() + " --size 64x64");
+    Json const bumpy = draw_json(cage.string() + " --size 64x64 --displace " + map.string() +
+                                 " --displace-scale .2");
+    EXPECT_NE(flat["hash"], bumpy["hash"]);
+    EXPECT_EQ(bumpy["config"]["displace"], "map.exr");
+    EXPECT_EQ(bumpy["config"]["displace_scale"], 0.2f);
+    EXPECT_EQ(bumpy["inputs"][1]["name"], "map.exr");
+    Result const r = run("draw spindle --displace " + map.string());
+    EXPECT_EQ(r.status, 2);
+    EXPECT_NE(r.err.find("texture coordinates"), std::string::npos) << r.err;
+}
+
+TEST(Program, ASequenceHasAPictureAndCountersForEachFrame)
+{
+    fs::path const picture = scratch() / "sway.png";
+    for (char const* scheme : {"gregory-stencil", "gregory-two-stage"}) {
+        std::string const options =
+            std::string("draw jug --size 64x48 --animate sway --frames 3 ") + "--scheme " + scheme;
+        Result const r = run(options + " -o " + picture.string() + " --json -");
+        ASSERT_EQ(r.status, 0) << r.err;
+        Json const j = Json::parse(r.out);
+        ASSERT_EQ(j["frames"].size(), 3u);
+        EXPECT_NE(j["frames"][0]["target_sha256"], j["frames"][1]["target_sha256"]);
+        EXPECT_EQ(j["frames"][0]["upload_bytes"], 6 * 48);
+        EXPECT_EQ(j["frames"][0]["counters"]["DSInvocations"],
+                  j["frames"][2]["counters"]["DSInvocations"]);
+        EXPECT_EQ(j["frames"][0]["counters"]["CSInvocations"].get<int>() > 0,
+                  std::string_view(scheme) == "gregory-two-stage");
+        for (char const* name : {"sway_0000.png", "sway_0001.png", "sway_0002.png"}) {
+            EXPECT_GT(fs::file_size(scratch() / name), 200u);
+            fs::remove(scratch() / name);
+        }
+        EXPECT_EQ(Json::parse(run(options + " -j 1 --lanes 4 --json -").out)["hash"], j["hash"]);
+    }
+}
+
+TEST(Program, Direct3D10DrawsTheSamePicture)
+{
+    fs::path const eleven = scratch() / "eleven.png", ten = scratch() / "ten.png";
+    ASSERT_EQ(run("draw jug --size 64x48 -o " + eleven.string()).status, 0);
+    ASSERT_EQ(run("draw jug --size 64x48 --direct3d 10 -o " + ten.string()).status, 0);
+    EXPECT_EQ(test::read_text(eleven), test::read_text(ten));
 }
 
 TEST(Program, DiffExitsOneWhereResultsDiffer)

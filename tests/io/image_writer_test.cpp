@@ -2,6 +2,7 @@
 #include "io/image_writer.h"
 
 #include "io/atomic_file.h"
+#include "io/image_reader.h"
 #include "tests/support/files.h"
 
 #include <gtest/gtest.h>
@@ -72,6 +73,39 @@ TEST(ColorTarget, NamesItsLimit)
         EXPECT_EQ(e.limit, 16384u);
     }
     EXPECT_THROW(ColorTarget(0, 4), Error);
+}
+
+TEST(ImageReader, ReadsHeightsRowsFromTheTop)
+{
+    fs::path const folder = scratch();
+    ColorTarget target(5, 3, Format::R32G32B32A32_FLOAT);
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 5; ++x)
+            encode(target.format(), {float(x + 5 * y) / 15, 1, 1, 1}, target.texel(x, y));
+    write_image(target, folder / "a.exr");
+    write_image(target, folder / "a.png");
+    HeightImage const exact = read_height_image(folder / "a.exr");
+    HeightImage const rounded = read_height_image(folder / "a.png");
+    for (HeightImage const* image : {&exact, &rounded}) {
+        ASSERT_EQ(image->width, 5);
+        ASSERT_EQ(image->height, 3);
+    }
+    for (std::size_t i = 0; i < 15; ++i) {
+        EXPECT_EQ(exact.heights[i], float(i) / 15);
+        EXPECT_NEAR(rounded.heights[i], float(i) / 15, 0.5 / 255 + 1e-7);
+    }
+}
+
+TEST(ImageReader, RefusesWhatIsNoHeightMap)
+{
+    fs::path const folder = scratch();
+    EXPECT_THROW(read_height_image(folder / "missing.png"), FormatError);
+    write_file(folder / "text.png", "no picture");
+    EXPECT_THROW(read_height_image(folder / "text.png"), FormatError);
+    ColorTarget target(2, 2, Format::R32G32B32A32_FLOAT);
+    target.clear({INFINITY, 0, 0, 0}, ThreadPool(1));
+    write_image(target, folder / "infinite.exr");
+    EXPECT_THROW(read_height_image(folder / "infinite.exr"), FormatError);
 }
 
 } // namespace

@@ -116,5 +116,41 @@ TEST(ObjReader, NumbersRoundAsTheNearestFloat)
     EXPECT_EQ(f.mesh.positions[1].z, 1e-3f);
 }
 
+TEST(ObjReader, ReadsTextureCoordinatesOfFaceCorners)
+{
+    ObjFile const obj = read_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                                 "vt 0 0.25\nvt 1 0.5 7\nvt 0.75 -1e1\n"
+                                 "f 1/1 2/2/9 3/-1 4/1\n",
+                                 "a.obj");
+    EXPECT_TRUE(obj.warnings.empty());
+    ASSERT_EQ(obj.mesh.coordinates.size(), 3u);
+    EXPECT_EQ(obj.mesh.coordinates[0], glm::vec2(0, 0.25f));
+    EXPECT_EQ(obj.mesh.coordinates[2], glm::vec2(0.75f, -10));
+    EXPECT_EQ(obj.mesh.face_coordinates, (std::vector<std::uint32_t>{0, 1, 2, 0}));
+}
+
+// The surface does not depend on them: faults leave the mesh without, and say so.
+TEST(ObjReader, BadTextureCoordinatesAreDroppedWithALine)
+{
+    std::string const vertices = "v 0 0 0\nv 1 0 0\nv 1 1 0\n";
+    for (auto const& [rest, line] :
+         {std::pair<std::string, std::string>{"vt 0 0\nf 1/1 2/1 3/2\n", "a.obj:5: "},
+          {"vt 0 0\nf 1/1 2/1 3\n", "a.obj:5: "},
+          {"vt 0\nf 1/1 2/1 3/1\n", "a.obj:4: "},
+          {"vt nan 0\nvt inf 1\nf 1/1 2/1 3/1\n", "a.obj:4: "},
+          {"vt 0 0\nf 1/-2 2/1 3/1\n", "a.obj:5: "},
+          {"vt 0 0\nf 1/0 2/1 3/1\n", "a.obj:5: "}}) {
+        ObjFile const obj = read_obj(vertices + rest, "a.obj");
+        EXPECT_EQ(obj.mesh.faces(), 1u);
+        EXPECT_TRUE(obj.mesh.face_coordinates.empty()) << rest;
+        ASSERT_EQ(obj.warnings.size(), 1u) << rest;
+        EXPECT_TRUE(obj.warnings[0].starts_with(line)) << obj.warnings[0];
+    }
+    // Coordinates that no face uses are nobody's concern.
+    ObjFile const obj = read_obj(vertices + "vt 0 0\nf 1 2 3\n", "a.obj");
+    EXPECT_TRUE(obj.warnings.empty());
+    EXPECT_TRUE(obj.mesh.face_coordinates.empty());
+}
+
 } // namespace
 } // namespace tessemu

@@ -35,7 +35,7 @@ void expect_same(Case const& c, int lanes, int threads)
     settings.machine = machine;
     settings.view_projection = view_projection(camera, 1);
     settings.pixel_shader = [&](PatchKind const& kind) {
-        return make_view(View::Patches, kind, camera, machine);
+        return make_view(View::Patches, kind, camera, nullptr, machine);
     };
     std::array<float, 4> const background{0, 0, 0, 0};
     ThreadPool const pool(threads);

@@ -61,7 +61,7 @@ template <class Shader> constexpr Cost domain_cost(double u, double v)
             sink, Shader::kControlPoints, &c.control_points);
         ControlPoints<EdgeRegister<Tally>> const registers(sink, 6 * N, &c.patch_constants);
         DomainInput<Tally> const in{Tally(u, sink), Tally(v, sink), Tally(1 - u - v, sink), 0};
-        (void)ProjectedSurface<Shader>{}(in, patch, registers);
+        (void)ProjectionEpilog{}(in, Shader{}(in, patch, registers));
     });
     return c;
 }

@@ -50,12 +50,7 @@ EdgeComparison compare_edges(ControlMesh const& mesh, PatchMesh const& patches,
 {
     EdgeComparison out;
     std::unordered_map<Place, Seen, PlaceHash> seen;
-    PassSettings settings;
-    settings.tess_factor = s.tess_factor;
-    settings.partitioning = s.partitioning;
-    settings.machine = s.machine;
-    settings.adaptive = tess_factor_rule(s.adaptive, s.camera, s.height, s.tess_factor);
-    for (DrawPass const& pass : patches.passes(settings)) {
+    for (DrawPass& pass : frame_passes(patches, s, pass_settings(s))) {
         GraphicsPipelineDesc desc = pass.pipeline.desc();
         if (replace)
             if (auto const other = replace(pass)) desc.domain_shader = other;
@@ -119,7 +114,8 @@ EdgeComparison compare_edges(ControlMesh const& mesh, PatchMesh const& patches,
                 }
             }
         };
-        draw(GraphicsPipeline(std::move(desc)), pass.call, nullptr, visit, threads);
+        pass.pipeline = GraphicsPipeline(std::move(desc));
+        draw_pass(pass, nullptr, visit, threads);
     }
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> patches_at;
     for (std::size_t f = 0; f < mesh.faces(); ++f) {

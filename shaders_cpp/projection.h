@@ -1,4 +1,4 @@
-// A surface's domain shader followed by the view-projection transform.
+// The view-projection transform, and the epilog that applies it to a surface.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -26,23 +26,16 @@ template <class T> constexpr float4<T> transform(Matrix4 const& m, float3<T> con
     return {row(0), row(1), row(2), row(3)};
 }
 
-/// Any domain shader that gives SurfacePoints, projected.
-template <class Surface> struct ProjectedSurface {
-    static constexpr TessellatorDomain kDomain = Surface::kDomain;
-    static constexpr int kControlPoints = Surface::kControlPoints;
-    template <class T> using ControlPoint = typename Surface::template ControlPoint<T>;
-    template <class T> using PatchConstant = typename Surface::template PatchConstant<T>;
+/// The epilog of a surface's domain shader.
+struct ProjectionEpilog {
+    template <class T> using Input = SurfacePoint<T>;
     template <class T> using Output = ShadedVertex<T>;
 
-    Surface surface;
     Matrix4 view_projection = kIdentity;
 
     template <class T>
-    constexpr ShadedVertex<T> operator()(DomainInput<T> const& in,
-                                         ControlPoints<ControlPoint<T>> const& patch,
-                                         ControlPoints<PatchConstant<T>> const& constants) const
+    constexpr ShadedVertex<T> operator()(DomainInput<T> const&, SurfacePoint<T> const& s) const
     {
-        SurfacePoint<T> const s = surface(in, patch, constants);
         return {transform(view_projection, s.position), s.normal};
     }
 };

@@ -1,0 +1,172 @@
+// Displacement along the surface normal, closed across patches and texture seams (LOOP09 4.4, 4.5;
+// sheet section 9).
+//
+//     P' = P + scale h N
+//
+// P and N have equal bits on both sides of an edge. So has h: a height map on texture coordinates
+// is read where the edge's or the corner's owner has it, in the edge's canonical direction, and the
+// solid pattern depends on P alone.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/texture.h"
+#include "shaders_cpp/projection.h"
+
+namespace tessemu {
+
+/// What reaches the rasterizer of a displaced surface.
+template <class T> struct DisplacedVertex {
+    float4<T> position;    ///< SV_Position
+    float3<T> normal;      ///< of the smooth surface, object space
+    float3<T> base;        ///< the smooth surface's point, object space
+    float2<T> coordinates; ///< texture coordinates of the patch itself
+    static constexpr auto signature()
+    {
+        return std::tuple{&DisplacedVertex::position, &DisplacedVertex::normal,
+                          &DisplacedVertex::base, &DisplacedVertex::coordinates};
+    }
+};
+
+/// Heights in [0, 1].
+struct HeightMap {
+    static constexpr int kImageSlot = 5;
+
+    Texture2D image;     ///< first component; not bound: the solid pattern
+    float frequency = 1; ///< of the pattern, periods per unit of length
+
+    /// \param base         the smooth surface's point
+    /// \param coordinates  texture coordinates, v upwards as in OBJ files; the image repeats
+    template <class T> T operator()(float3<T> const& base, float2<T> const& coordinates) const
+    {
+        if (!image.bound()) return studs<T>(base);
+        Sampler sampler;
+        sampler.address_u = sampler.address_v = AddressMode::Wrap;
+        float2<T> const at(coordinates.x, T(T(1) - coordinates.y));
+        return sample_level<T>(image, sampler, at, T(0)).x;
+    }
+
+private:
+    /// Studs on a cubic lattice: (b(x) b(y) + b(y) b(z) + b(z) b(x)) / 3 with a bump of one period
+    /// b(x) = 16 f^2 (1 - f)^2, f the fraction of x; once differentiable.
+    template <class T> T studs(float3<T> const& base) const
+    {
+        Routine<T> const here("studs");
+        auto const bump = [&](T const& x) -> T {
+            T const scaled = T(frequency) * x;
+            T const f = scaled - floor(scaled);
+            T const g = f * T(T(1) - f);
+            return T(16) * T(g * g);
+        };
+        T const x = bump(base.x), y = bump(base.y), z = bump(base.z);
+        return T(1.0 / 3) * T(x * y + y * z + z * x);
+    }
+};
+
+/// Texture coordinates of patches' corners, and whose they are on shared edges and at corners.
+///
+/// A corner of a face has four pairs: the face's own; those of the edge's owner at both ends of the
+/// edge that starts there, in the edge's canonical direction; those of the vertex's owner. Of the
+/// faces that meet there the owner is the one with the smallest number.
+struct OwnedCoordinates {
+    static constexpr int kFloats = 8;
+    Buffer<float> corners; ///< [face corner][4][2]
+    /// [primitive][2]: the face's first corner; how often the patch is turned against the face,
+    /// plus 4 << k where the canonical direction of edge k runs from corner k+1 to k
+    Buffer<std::uint32_t> patches;
+    int sides = 4;
+
+    template <class T> struct Pair {
+        float2<T> own, owner;
+    };
+    /// At (u, v) of the patch. \cost inside a quad 10 mul, 8 fetches
+    template <class T> Pair<T> operator()(DomainInput<T> const& in) const
+    {
+        Routine<T> const here("owned_coordinates");
+        std::int32_t const first = load<T>(patches, 2 * in.primitive_id);
+        std::int32_t const word = load<T>(patches, 2 * in.primitive_id + 1);
+        auto const read = [&](int corner, int which) -> float2<T> {
+            std::int32_t const at = kFloats * (first + (corner + (word & 3)) % sides) + 2 * which;
+            return {load<T>(corners, at), load<T>(corners, at + 1)};
+        };
+        float2<T> const c0 = read(0, 0), c1 = read(1, 0), c2 = read(2, 0);
+        T const U = T(1) - in.u, V = T(1) - in.v, w = U - in.v;
+        Pair<T> r;
+        if (sides == 4) {
+            float2<T> const bottom = U * c0 + in.u * c1, top = U * read(3, 0) + in.u * c2;
+            r.own = V * bottom + in.v * top;
+        } else {
+            r.own = in.u * c0 + in.v * c1 + w * c2;
+        }
+        r.owner = r.own;
+        // As the watertight patch: edge k runs from corner k to k+1 with parameter t[k].
+        bool const quad = sides == 4;
+        mask_of<T> const on[4] = {quad ? in.v == T(0) : w == T(0),
+                                  quad ? in.u == T(1) : in.u == T(0),
+                                  quad ? in.v == T(1) : in.v == T(0), in.u == T(0)};
+        T const t[4] = {quad ? in.u : in.v, quad ? in.v : w, quad ? U : in.u, V};
+        for (int k : loop<T>(sides))
+            r.owner = when(
+                on[k],
+                [&] {
+                    bool const reversed = word >> (2 + k) & 1;
+                    return on_edge<T>(read(k, 1), read(k, 2), reversed ? T(T(1) - t[k]) : t[k]);
+                },
+                r.owner);
+        for (int k : loop<T>(sides)) {
+            mask_of<T> const corner = on[k] & on[(k + sides - 1) % sides];
+            r.owner = when(
+                corner, [&] { return read(k, 3); }, r.owner);
+        }
+        return r;
+    }
+
+private:
+    /// The same routine from both sides of an edge, whatever the patches' shapes.
+    template <class T> static float2<T> on_edge(float2<T> const& first, float2<T> const& last, T s)
+    {
+        Routine<T> const here("edge_coordinates");
+        return float2<T>(T(T(1) - s) * first + s * last);
+    }
+};
+
+/// The epilog of a displaced surface.
+struct DisplacementEpilog {
+    template <class T> using Input = SurfacePoint<T>;
+    template <class T> using Output = DisplacedVertex<T>;
+
+    HeightMap height;
+    float scale = 0; ///< displacement where the height is 1, object space
+    OwnedCoordinates coordinates;
+    Matrix4 view_projection = kIdentity;
+
+    std::vector<ResourceInfo> resources() const
+    {
+        if (!height.image.bound()) return {};
+        return {height.image.info(), coordinates.corners.info(), coordinates.patches.info()};
+    }
+
+    template <class T>
+    DisplacedVertex<T> operator()(DomainInput<T> const& in, SurfacePoint<T> const& s) const
+    {
+        float2<T> const origin(T(0), T(0));
+        OwnedCoordinates::Pair<T> c{origin, origin};
+        if (height.image.bound()) c = coordinates.template operator()<T>(in);
+        T const h = T(scale) * height.template operator()<T>(s.position, c.owner);
+        float3<T> const displaced = s.position + h * s.normal;
+        return {transform(view_projection, displaced), s.normal, s.position, c.own};
+    }
+};
+
+/// Attributes of a displaced surface that its pixel shaders read.
+template <class T> struct DisplacedAttributes {
+    float3<T> normal, base;
+    float2<T> coordinates;
+    static constexpr auto signature()
+    {
+        return std::tuple{&DisplacedAttributes::normal, &DisplacedAttributes::base,
+                          &DisplacedAttributes::coordinates};
+    }
+};
+
+} // namespace tessemu

@@ -1,0 +1,158 @@
+// The Direct3D 10 path draws the same surface at its own costs.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/instanced_tessellation.h"
+
+#include "io/model.h"
+#include "pipeline/frame.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace tessemu {
+namespace {
+
+struct Loaded {
+    PreparedMesh mesh;
+    std::unique_ptr<PatchMesh> patches;
+};
+Loaded load(char const* model, char const* scheme)
+{
+    Technique const& technique = find_technique(scheme);
+    Loaded out;
+    out.mesh = prepare_mesh(load_model(model).mesh, technique);
+    out.patches = technique.build(*out.mesh.topology, {});
+    return out;
+}
+
+// Everything that the domain shader wrote, patch by patch.
+std::vector<std::vector<std::uint32_t>> surface(Loaded const& m, FrameSettings const& s)
+{
+    std::vector<std::vector<std::uint32_t>> out;
+    visit_surface(*m.patches, s, ThreadPool(), [&](DrawPass const& pass, ShadedPatch const& p) {
+        auto const& desc = pass.pipeline.desc();
+        auto const floats = std::size_t(desc.domain_shader ? desc.domain_shader->output_floats()
+                                                           : desc.vertex_shader->output_floats());
+        std::vector<std::uint32_t> bits{p.primitive_id};
+        for (std::size_t k = 0; k < floats; ++k)
+            for (std::size_t i = 0; i < p.points->patch.points(); ++i) {
+                bits.emplace_back();
+                std::memcpy(&bits.back(), &p.outputs[k * p.stride + i], 4);
+            }
+        out.push_back(std::move(bits));
+    });
+    return out;
+}
+
+StageStatistics stage(DrawStatistics const& d, std::string const& name)
+{
+    for (StageStatistics const& s : d.stages)
+        if (s.stage == name) return s;
+    ADD_FAILURE() << "no stage " << name;
+    return {};
+}
+
+constexpr std::pair<char const*, char const*> kCases[] = {
+    {"jug", "gregory-stencil"},       {"spindle", "gregory-stencil"}, {"jug", "gregory-two-stage"},
+    {"spindle", "gregory-two-stage"}, {"saddle_star", "acc"},         {"spindle", "pm"}};
+
+TEST(InstancedTessellation, GivesEverySchemesSurfaceBitForBit)
+{
+    for (auto const& [model, scheme] : kCases) {
+        Loaded const m = load(model, scheme);
+        for (Contraction contraction : {Contraction::None, Contraction::Mixed})
+            for (bool moved : {false, true}) {
+                FrameSettings s;
+                s.tess_factor = 5.7f;
+                s.machine.contraction = contraction;
+                s.machine.seed = 3;
+                if (moved) {
+                    s.pose = std::make_shared<Pose>(SpineRig(*m.mesh.mesh).sway(0.3));
+                    s.displacement =
+                        std::make_shared<Displacement>(Displacement::studs(0.2f, 0.05f));
+                }
+                auto const eleven = surface(m, s);
+                s.direct3d10 = true;
+                ASSERT_FALSE(eleven.empty());
+                ASSERT_EQ(surface(m, s), eleven) << model << " " << scheme;
+            }
+    }
+}
+
+TEST(InstancedTessellation, DrawsTheSamePicture)
+{
+    for (auto const& [model, scheme] : kCases) {
+        Loaded const m = load(model, scheme);
+        FrameSettings s;
+        s.width = s.height = 200;
+        s.tess_factor = 3;
+        s.camera = frame_points(m.mesh.mesh->positions, {0.5f, 0.5f, 1}, 1);
+        ThreadPool const threads;
+        Frame const eleven = draw_frame(*m.patches, s, threads);
+        s.direct3d10 = true;
+        Frame const ten = draw_frame(*m.patches, s, threads);
+        for (int y = 0; y < s.height; ++y)
+            ASSERT_EQ(std::memcmp(eleven.color.texel(0, y), ten.color.texel(0, y),
+                                  eleven.color.row_bytes()),
+                      0)
+                << model << " " << scheme << " row " << y;
+        EXPECT_EQ(ten.statistics.pipeline.HSInvocations, 0u);
+        EXPECT_EQ(ten.statistics.pipeline.DSInvocations, 0u);
+        EXPECT_EQ(ten.statistics.pipeline.CPrimitives, eleven.statistics.pipeline.CPrimitives);
+        EXPECT_EQ(ten.statistics.pipeline.PSInvocations, eleven.statistics.pipeline.PSInvocations);
+    }
+}
+
+// The same operations in other stages: the hull shader's in the geometry shader, the domain
+// shader's in the vertex shader; and the same reads of control points, from a buffer.
+TEST(InstancedTessellation, MovesTheCostsToOtherStages)
+{
+    for (auto const& [model, scheme] : kCases) {
+        Loaded const m = load(model, scheme);
+        FrameSettings s;
+        s.tess_factor = 4;
+        s.vertex_cache = vertex_cache_from_name("infinite");
+        DrawStatistics const eleven = visit_surface(*m.patches, s, ThreadPool(), {});
+        s.direct3d10 = true;
+        DrawStatistics const ten = visit_surface(*m.patches, s, ThreadPool(), {});
+        EXPECT_EQ(ten.pipeline.GSInvocations, eleven.pipeline.HSInvocations);
+        EXPECT_EQ(stage(ten, "geometry_shader").flops, stage(eleven, "hull_shader").flops);
+        FlopCount sum = stage(eleven, "vertex_shader").flops;
+        sum += stage(eleven, "domain_shader").flops;
+        EXPECT_EQ(stage(ten, "vertex_shader").flops, sum);
+        EXPECT_EQ(ten.pipeline.VSInvocations,
+                  eleven.pipeline.VSInvocations + eleven.pipeline.DSInvocations);
+        auto const reads = [](StageStatistics const& st, std::string const& name) {
+            for (FetchStatistics const& f : st.fetches)
+                if (f.resource == name) return std::tuple(f.count, f.bytes);
+            return std::tuple(std::uint64_t(0), std::uint64_t(0));
+        };
+        for (char const* name : {"control_points", "patch_constants"})
+            EXPECT_EQ(reads(stage(ten, "vertex_shader"), name),
+                      reads(stage(eleven, "domain_shader"), name))
+                << model << " " << scheme << " " << name;
+        // What was streamed out is the patches' control points and constants.
+        std::uint64_t streamed = 0;
+        for (DrawPass const& pass : frame_passes(*m.patches, FrameSettings{}, PassSettings{})) {
+            HullProgram const& h = *pass.pipeline.desc().hull_shader;
+            streamed += pass.patches.size() *
+                        std::uint64_t(h.control_points() * h.control_point_floats() +
+                                      h.patch_constants() * h.patch_constant_floats()) *
+                        sizeof(float);
+        }
+        EXPECT_EQ(stage(ten, "stream_output").output_bytes, streamed);
+    }
+}
+
+TEST(InstancedTessellation, RefusesAdaptiveFactors)
+{
+    Loaded const m = load("jug", "gregory-stencil");
+    FrameSettings s;
+    s.direct3d10 = true;
+    s.adaptive.kind = AdaptiveFactors::Kind::Pixels;
+    EXPECT_THROW(visit_surface(*m.patches, s, ThreadPool(), {}), Error);
+}
+
+} // namespace
+} // namespace tessemu
