@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -196,38 +197,23 @@ void compare_closest(Triangles const& samples, Triangles const& surface, double 
     normal = n.result();
 }
 
-} // namespace
+constexpr std::uint32_t kNoPartner = 0xffffffffu;
 
-SurfaceComparison compare_with_limit(Topology const& topology, PatchMesh const& patches,
-                                     FrameSettings settings, int level, ThreadPool const& threads)
+// The scheme's domain points on the limit surface's grid, and the limit's vertex at the same
+// parameter.
+struct SchemeSamples {
+    Triangles triangles;
+    std::vector<std::uint32_t> partner;
+    std::vector<int> sides; ///< of a quad patch that the point lies on: 0 to 2
+};
+
+SchemeSamples sample_scheme(LimitSurface const& limit, PatchMesh const& patches,
+                            FrameSettings settings, ThreadPool const& threads)
 {
-    if (level > 6) throw LimitError("comparison level", std::uint64_t(level), 6);
-    LimitSurface const limit(topology, level);
-    SurfaceComparison out;
-    Vec low(1e300), high(-1e300);
-    for (glm::vec3 const& p : topology.mesh().positions)
-        low = min(low, Vec(p)), high = max(high, Vec(p));
-    out.diagonal = glm::length(high - low);
-
-    Triangles smooth;
-    smooth.position = limit.positions();
-    smooth.normal = limit.normals();
-    std::vector<std::string> warnings; // the patches gave them
-    std::vector<char> const hidden = hidden_faces(topology, warnings);
-    for (std::uint32_t face = 0; face < topology.mesh().faces(); ++face) {
-        if (hidden[face]) continue;
-        for (std::size_t f = limit.first_quad(face); f < limit.first_quad(face + 1); ++f) {
-            auto const q = limit.quads().face(f);
-            smooth.index.insert(smooth.index.end(), {q[0], q[1], q[2], q[0], q[2], q[3]});
-        }
-    }
-    smooth.weigh();
-
     settings.tess_factor = float(limit.grid());
     settings.partitioning = Partitioning::Integer;
-    Triangles scheme;
-    std::vector<std::uint32_t> partner; // the limit's vertex at the same parameter
-    constexpr std::uint32_t kNoPartner = 0xffffffffu;
+    SchemeSamples out;
+    Triangles& scheme = out.triangles;
     visit_surface(patches, settings, threads, [&](DrawPass const& pass, ShadedPatch const& p) {
         PatchOrigin const& origin = pass.patches[p.primitive_id];
         auto const first = std::uint32_t(scheme.position.size());
@@ -243,26 +229,119 @@ SurfaceComparison compare_with_limit(Topology const& topology, PatchMesh const& 
                 at = limit.vertex(origin.face, int(f.u * float(limit.grid())),
                                   int(f.v * float(limit.grid())));
             }
-            partner.push_back(at);
+            out.partner.push_back(at);
+            float const u = p.points->u[i], v = p.points->v[i];
+            out.sides.push_back((u == 0 || u == 1) + (v == 0 || v == 1));
         }
         for (std::uint32_t i : p.points->patch.indices) scheme.index.push_back(first + i);
     });
+    return out;
+}
+
+double diagonal_of(ControlMesh const& mesh)
+{
+    Vec low(1e300), high(-1e300);
+    for (glm::vec3 const& p : mesh.positions) low = min(low, Vec(p)), high = max(high, Vec(p));
+    return glm::length(high - low);
+}
+
+EqualParameterErrors errors_of(LimitSurface const& limit, SchemeSamples const& samples,
+                               double diagonal)
+{
+    Triangles const& t = samples.triangles;
+    EqualParameterErrors out;
+    out.diagonal = diagonal;
+    out.position = t.position;
+    out.normal = t.normal;
+    // Weights are areas of the limit surface, the same for every scheme.
+    Triangles same = t;
+    std::size_t const n = t.position.size();
+    out.distance.assign(n, 0);
+    out.angle.assign(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+        std::uint32_t const at = samples.partner[i];
+        if (at == kNoPartner) continue;
+        same.position[i] = limit.positions()[at];
+        out.distance[i] = glm::length(t.position[i] - same.position[i]) / diagonal;
+        out.angle[i] = angle(t.normal[i], limit.normals()[at]);
+    }
+    for (std::size_t i = 0; i + 2 < t.index.size(); i += 3) // a patch's points all have partners
+        if (samples.partner[t.index[i]] != kNoPartner)
+            out.triangles.insert(out.triangles.end(), {t.index[i], t.index[i + 1], t.index[i + 2]});
+    same.index = out.triangles;
+    same.weigh();
+    out.weight = std::move(same.weight);
+    for (std::size_t i = 0; i < n; ++i)
+        out.grid_weight.push_back(out.weight[i] * (1 << samples.sides[i]));
+    return out;
+}
+
+} // namespace
+
+ErrorStatistics EqualParameterErrors::statistics(std::vector<double> const& values,
+                                                 std::vector<double> const& weights)
+{
+    Accumulator a;
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        if (weights[i] > 0) a.add(values[i], weights[i]);
+    return a.result();
+}
+
+double quantile(std::vector<double> const& values, std::vector<double> const& weights, double share)
+{
+    std::vector<std::size_t> order;
+    double all = 0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (weights[i] > 0) order.push_back(i), all += weights[i];
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return values[a] != values[b] ? values[a] < values[b] : a < b;
+    });
+    double sum = 0;
+    for (std::size_t i : order)
+        if ((sum += weights[i]) >= share * all) return values[i];
+    return order.empty() ? 0 : values[order.back()];
+}
+
+EqualParameterErrors equal_parameter_errors(Topology const& topology, PatchMesh const& patches,
+                                            FrameSettings settings, int level,
+                                            ThreadPool const& threads)
+{
+    if (level > 6) throw LimitError("comparison level", std::uint64_t(level), 6);
+    LimitSurface const limit(topology, level);
+    return errors_of(limit, sample_scheme(limit, patches, settings, threads),
+                     diagonal_of(topology.mesh()));
+}
+
+SurfaceComparison compare_with_limit(Topology const& topology, PatchMesh const& patches,
+                                     FrameSettings settings, int level, ThreadPool const& threads)
+{
+    if (level > 6) throw LimitError("comparison level", std::uint64_t(level), 6);
+    LimitSurface const limit(topology, level);
+    SurfaceComparison out;
+    out.diagonal = diagonal_of(topology.mesh());
+
+    Triangles smooth;
+    smooth.position = limit.positions();
+    smooth.normal = limit.normals();
+    std::vector<std::string> warnings; // the patches gave them
+    std::vector<char> const hidden = hidden_faces(topology, warnings);
+    for (std::uint32_t face = 0; face < topology.mesh().faces(); ++face) {
+        if (hidden[face]) continue;
+        for (std::size_t f = limit.first_quad(face); f < limit.first_quad(face + 1); ++f) {
+            auto const q = limit.quads().face(f);
+            smooth.index.insert(smooth.index.end(), {q[0], q[1], q[2], q[0], q[2], q[3]});
+        }
+    }
+    smooth.weigh();
+
+    SchemeSamples const samples = sample_scheme(limit, patches, settings, threads);
+    Triangles scheme = samples.triangles;
     scheme.weigh();
 
-    // Weights are areas of the limit surface, the same for every scheme.
-    Triangles same = scheme;
-    for (std::size_t i = 0; i < partner.size(); ++i)
-        if (partner[i] != kNoPartner) same.position[i] = smooth.position[partner[i]];
-    same.weigh();
-    Accumulator position, normal;
-    for (std::size_t i = 0; i < partner.size(); ++i) {
-        if (partner[i] == kNoPartner) continue;
-        position.add(glm::length(scheme.position[i] - same.position[i]) / out.diagonal,
-                     same.weight[i]);
-        normal.add(angle(scheme.normal[i], smooth.normal[partner[i]]), same.weight[i]);
-    }
-    out.equal_position = position.result();
-    out.equal_normal = normal.result();
+    EqualParameterErrors const equal = errors_of(limit, samples, out.diagonal);
+    out.equal_position = equal.position_statistics();
+    out.equal_normal = equal.normal_statistics();
+    out.equal_normal_grid = equal.normal_grid_statistics();
     compare_closest(scheme, smooth, out.diagonal, threads, out.to_limit, out.normal_to_limit);
     compare_closest(smooth, scheme, out.diagonal, threads, out.from_limit, out.normal_from_limit);
     return out;

@@ -23,11 +23,44 @@ struct ErrorStatistics {
     std::size_t samples = 0;
 };
 
+/// The scheme's surface with its error against the limit surface's point of equal parameter. Faces
+/// that are not quads are left out.
+struct EqualParameterErrors {
+    double diagonal = 0; ///< of the control mesh's bounding box
+    std::vector<glm::dvec3> position, normal;
+    std::vector<std::uint32_t> triangles; ///< three a triangle
+    std::vector<double> distance;         ///< divided by the diagonal
+    std::vector<double> angle;            ///< radians
+    std::vector<double> weight;           ///< area of the limit surface around a point
+
+    /// The same with points on a patch's sides and corners counted as if the patch went on: a mean
+    /// over each patch's grid of samples, which leans to the sides. It depends on the level.
+    std::vector<double> grid_weight;
+
+    ErrorStatistics position_statistics() const { return statistics(distance, weight); }
+    ErrorStatistics normal_statistics() const { return statistics(angle, weight); }
+    ErrorStatistics normal_grid_statistics() const { return statistics(angle, grid_weight); }
+
+private:
+    static ErrorStatistics statistics(std::vector<double> const& values,
+                                      std::vector<double> const& weights);
+};
+
+/// \param level  1 to 6: tess factor 2^level
+EqualParameterErrors equal_parameter_errors(Topology const& topology, PatchMesh const& patches,
+                                            FrameSettings settings, int level,
+                                            ThreadPool const& threads);
+
+/// What `share` of the weight, 0 to 1, stays at or below.
+double quantile(std::vector<double> const& values, std::vector<double> const& weights,
+                double share);
+
 struct SurfaceComparison {
     double diagonal = 0; ///< of the control mesh's bounding box; distances are divided by it
     ErrorStatistics to_limit, from_limit; ///< closest point: scheme's samples, limit's samples
     ErrorStatistics normal_to_limit, normal_from_limit; ///< angles there, radians
     ErrorStatistics equal_position, equal_normal;       ///< by equal parameter; quads only
+    ErrorStatistics equal_normal_grid;                  ///< see EqualParameterErrors::grid_weight
 };
 
 /// \param topology  of the mesh that `patches` was built from

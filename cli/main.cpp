@@ -42,13 +42,29 @@ void add_surface_options(CLI::App& verb, Options& o)
                     "output, instances (LOOP09 5)")
         ->check(CLI::IsMember({10, 11}))
         ->capture_default_str();
-    verb.add_option("--vertex-cache", o.vertex_cache, "none, fifo:N, lru:N, infinite")
-        ->capture_default_str();
     verb.add_option("--lanes", o.lanes, "4, 8 or 16; changes no result")->capture_default_str();
     verb.add_option("-j", o.threads, "threads; 0: all cores")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
     verb.add_option("--json", o.json, "write the result as JSON; '-' is standard output");
+}
+
+void add_vertex_cache(CLI::App& verb, Options& o)
+{
+    verb.add_option("--vertex-cache", o.vertex_cache, "none, fifo:N, lru:N, infinite")
+        ->capture_default_str();
+}
+
+void add_picture_options(CLI::App& verb, Options& o)
+{
+    verb.add_option("--size", o.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+    verb.add_option("--camera", o.camera,
+                    "auto, from=X,Y,Z, or eye=X,Y,Z:target=X,Y,Z:up=X,Y,Z:focal=F")
+        ->capture_default_str();
+    verb.add_option("--tess-edge", o.tess_edge,
+                    "factors edge by edge: pixels=P, segments of about P pixels; distance=D, "
+                    "--tess at distance D and falling with it; none: --tess everywhere")
+        ->capture_default_str();
 }
 
 } // namespace
@@ -76,25 +92,24 @@ int main(int argc, char** argv)
         "  tessemu draw cage.obj --tess 16 --view patches -o patches.png --json counters.json\n"
         "  tessemu draw cage.obj --camera from=1,0.5,0 --size 1920x1080 -o side.exr\n"
         "  tessemu draw jug --tess 32 --displace studs -o studs.png\n"
-        "  tessemu draw jug --animate sway --frames 12 -o sway.png --json sway.json",
+        "  tessemu draw jug --animate sway --frames 12 -o sway.png --json sway.json\n"
+        "  tessemu draw cage.obj --scheme acc --view error -o error.png",
         run_draw);
     draw->add_option("MODEL", o.model, "OBJ file or built-in cage, see 'tessemu models'")
         ->required();
     draw->add_option("-o", o.output, "picture, .png or .exr");
-    draw->add_option("--size", o.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
-    draw->add_option("--camera", o.camera,
-                     "auto, from=X,Y,Z, or eye=X,Y,Z:target=X,Y,Z:up=X,Y,Z:focal=F")
-        ->capture_default_str();
+    add_picture_options(*draw, o);
     draw->add_option(
             "--view", o.view,
             "lit, normals, patches, depth, wire, coverage: how often a pixel is covered, before "
-            "depth")
+            "depth; cage: the control mesh; error: against the Catmull-Clark limit surface")
         ->capture_default_str();
-    draw->add_option(
-            "--tess-edge", o.tess_edge,
-            "factors edge by edge: pixels=P, segments of about P pixels; distance=D, --tess "
-            "at distance D and falling with it; none: --tess everywhere")
+    draw->add_option("--error-max", o.error_max,
+                     "of the error view: POSITION,ANGLE that are red, in diagonals and radians; "
+                     "auto: what 99 % of the area stays below")
         ->capture_default_str();
+    draw->add_option("--level", o.level, "of the error view: 2^level segments an edge [4]")
+        ->check(CLI::Range(1, 6));
     draw->add_option("--frames", o.frames,
                      "pictures of one period of the motion, numbered: NAME_0000.png and so on")
         ->capture_default_str();
@@ -103,6 +118,7 @@ int main(int argc, char** argv)
         ->capture_default_str();
     draw->add_option("--cull", o.cull, "none, back, front")->capture_default_str();
     add_surface_options(*draw, o);
+    add_vertex_cache(*draw, o);
 
     CLI::App* exporter = verb("export", "write the tessellated mesh, patch by patch",
                               "  tessemu export jug --tess 8 -o jug.ply\n"
@@ -112,6 +128,7 @@ int main(int argc, char** argv)
     exporter->add_option("-o", o.output, "mesh, .obj or .ply")->required();
     exporter->add_flag("--weld", o.weld, "join vertices with equal bits");
     add_surface_options(*exporter, o);
+    add_vertex_cache(*exporter, o);
 
     CLI::App* tess =
         verb("tessellate", "run the fixed-function tessellator alone",
@@ -140,9 +157,8 @@ int main(int argc, char** argv)
              "  tessemu compare cage.obj --scheme acc --level 5 --json acc.json",
              run_compare);
     compare->add_option("MODEL", o.model, "OBJ file or built-in cage")->required();
-    compare->add_option("--level", o.level, "both surfaces at 2^level segments an edge")
-        ->check(CLI::Range(1, 6))
-        ->capture_default_str();
+    compare->add_option("--level", o.level, "both surfaces at 2^level segments an edge [4]")
+        ->check(CLI::Range(1, 6));
     compare->add_option("--scheme", o.scheme, "patch scheme, see 'tessemu schemes'")
         ->capture_default_str();
     compare->add_option("--set", o.set, "NAME=VALUE: a parameter of the scheme");
@@ -158,16 +174,40 @@ int main(int argc, char** argv)
         ->capture_default_str();
     compare->add_option("--json", o.json, "write the result as JSON; '-' is standard output");
 
-    CLI::App* reproduce = verb("reproduce", "a paper's table: its numbers, ours and the ratio",
-                               "  tessemu reproduce loop09-table3 --models cages", run_reproduce);
-    reproduce->add_option("NAME", o.reproduce, "loop09-table3")->required();
+    CLI::App* cost =
+        verb("cost", "predicted time by stage on a described machine, and what bounds it",
+             "  tessemu cost jug --tess 16\n"
+             "  tessemu cost cage.obj --direct3d 10 --geometry-only -o roofline.png\n"
+             "  tessemu cost cage.obj --machine my_machine.json --json cost.json",
+             run_cost);
+    cost->add_option("MODEL", o.model, "OBJ file or built-in cage")->required();
+    cost->add_option("--machine", o.machine, "a file, or gtx260 or loop09-emulator")
+        ->capture_default_str();
+    cost->add_option("-o", o.output, "roofline picture, .png or .exr");
+    cost->add_flag("--geometry-only", o.geometry_only, "without rasterization");
+    add_picture_options(*cost, o);
+    add_surface_options(*cost, o);
+
+    CLI::App* reproduce =
+        verb("reproduce", "a paper's table or figure: its numbers, ours and the ratio; or pictures",
+             "  tessemu reproduce loop09-table1\n"
+             "  tessemu reproduce loop09-table3 --models cages\n"
+             "  tessemu reproduce loop09-figure9 -o figure9.png",
+             run_reproduce);
+    reproduce
+        ->add_option("NAME", o.reproduce,
+                     "loop09-table1, -table2, -table3, -figure1, -figure3, -figure9, -figure10, "
+                     "-figure11, -figure12")
+        ->required();
     reproduce
         ->add_option("--models", o.models,
-                     "folder with the paper's cages: bigguy.obj and monsterfrog.obj")
+                     "folder with the paper's cages, bigguy.obj and monsterfrog.obj: needed by "
+                     "tables 2 and 3, shown by figures 9, 11 and 12 where they are there")
         ->capture_default_str();
-    reproduce->add_option("--level", o.level, "surfaces at 2^level segments an edge")
-        ->check(CLI::Range(1, 6))
-        ->capture_default_str();
+    reproduce->add_option("-o", o.output, "of a figure: picture, .png or .exr [NAME.png]");
+    reproduce
+        ->add_option("--level", o.level, "of table 3: surfaces at 2^level segments an edge [3]")
+        ->check(CLI::Range(1, 6));
     reproduce->add_option("-j", o.threads, "threads; 0: all cores")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
@@ -203,7 +243,7 @@ int main(int argc, char** argv)
         return 2;
     }
     if (argc == 2)
-        for (CLI::App* v : {draw, exporter, tess, compare, reproduce, diff, info})
+        for (CLI::App* v : {draw, exporter, tess, compare, cost, reproduce, diff, info})
             if (v->get_name() == argv[1]) {
                 fmt::print(stderr, "{}", v->help());
                 return 2;

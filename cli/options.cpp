@@ -133,6 +133,18 @@ std::map<std::string, double> parse_parameters(Options const& o)
     return out;
 }
 
+std::optional<std::pair<double, double>> parse_error_max(std::string const& text)
+{
+    if (text == "auto") return {};
+    auto const parts = split(text, ',');
+    if (parts.size() != 2)
+        throw Error("--error-max is '" + text + "', it must be auto or POSITION,ANGLE");
+    std::pair const out(number(parts[0], "--error-max"), number(parts[1], "--error-max"));
+    if (!(out.first > 0 && out.second > 0))
+        throw Error("--error-max is '" + text + "', both must be above 0");
+    return out;
+}
+
 AdaptiveFactors parse_tess_edge(std::string const& text)
 {
     if (text == "none") return {};

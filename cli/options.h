@@ -12,16 +12,18 @@ struct Options {
     std::string scheme = "gregory-stencil", partitioning = "fractional_odd", size = "1024x1024";
     std::string camera = "auto", view = "lit", normals = "frozen", contraction = "none",
                 cull = "none";
-    std::string vertex_cache = "fifo:16", tess_edge = "none", displace = "none", animate = "none";
-    std::string reproduce, models = ".";
+    std::string vertex_cache = "fifo:16", tess_edge = "none", displace = "none", animate = "none",
+                error_max = "auto";
+    std::string reproduce, models = ".", machine = "gtx260";
     std::string domain = "quad", primitive = "triangle_cw", batch;
     std::vector<double> factors;
     std::vector<std::string> set;
     std::string other;
     double tess = 8, tolerance = 0, phase = 0;
     std::optional<double> displace_scale;
-    int lanes = kNativeLanes, threads = 0, samples = 1, level = 4, frames = 1, direct3d = 11;
-    bool weld = false, all = false;
+    std::optional<int> level;
+    int lanes = kNativeLanes, threads = 0, samples = 1, frames = 1, direct3d = 11;
+    bool weld = false, all = false, geometry_only = false;
 };
 
 // Each throws Error that names the option, the value and what is allowed.
@@ -31,6 +33,8 @@ Camera parse_camera(std::string const& text, std::span<glm::vec3 const> points,
                     float width_over_height);
 Machine parse_machine(Options const& o);
 std::map<std::string, double> parse_parameters(Options const& o);
+/// auto, or POSITION,ANGLE: what is red; nothing for auto
+std::optional<std::pair<double, double>> parse_error_max(std::string const& text);
 /// none, pixels=P or distance=D
 AdaptiveFactors parse_tess_edge(std::string const& text);
 /// none, studs, or the path of an image; nothing for none. May read the file.

@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/verbs.h"
 
+#include "analysis/cost.h"
+#include "analysis/loop09_figures.h"
 #include "analysis/loop09_table3.h"
+#include "analysis/loop09_timing.h"
 #include "io/atomic_file.h"
+#include "io/figure.h"
 #include "io/image_writer.h"
+#include "io/machine_file.h"
 #include "io/mesh_writer.h"
 #include "io/model.h"
 #include "io/report.h"
 #include "io/result_diff.h"
 #include "io/sha256.h"
 #include "pipeline/builtin_models.h"
+#include "pipeline/colored_mesh.h"
 #include "pipeline/frame.h"
 
 #include <fmt/format.h>
@@ -22,6 +28,8 @@
 namespace tessemu {
 
 namespace {
+
+constexpr int kCompareLevel = 4; // 16 segments an edge
 
 class Stopwatch {
 public:
@@ -194,6 +202,12 @@ std::string numbered(std::string const& path, std::size_t i)
     return p.string();
 }
 
+ErrorRow error_row(char const* quantity, char const* measure, char const* unit,
+                   ErrorStatistics const& e)
+{
+    return {quantity, measure, unit, e.max, e.mean, e.rms, e.samples};
+}
+
 std::vector<double> as_doubles(glm::vec3 v)
 {
     return {v.x, v.y, v.z};
@@ -201,13 +215,60 @@ std::vector<double> as_doubles(glm::vec3 v)
 
 } // namespace
 
+namespace {
+
+// The control mesh in the frame's pose.
+void draw_cage(ControlMesh mesh, FrameSettings const& f, ThreadPool const& threads, Frame& frame)
+{
+    if (f.pose)
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+            mesh.positions[v] = f.pose->posed(v, mesh.positions[v]);
+    draw_colored_mesh(control_mesh_picture(Topology(mesh)), f, 0.45f, threads, frame);
+}
+
+int run_error_view(Options const& o, Job& job, int width, int height)
+{
+    auto const max = parse_error_max(o.error_max);
+    int const level = o.level.value_or(kCompareLevel);
+    if (job.frame.displacement || job.frame.pose || job.frame.direct3d10)
+        throw Error("--view error compares the smooth surface at rest: it takes no --displace, "
+                    "--animate or --direct3d 10");
+    ThreadPool const threads(o.threads);
+    Stopwatch const clock;
+    EqualParameterErrors const e =
+        equal_parameter_errors(*job.prepared.topology, *job.patches, job.frame, level, threads);
+    if (e.triangles.empty()) throw Error(o.model + ": --view error needs quads, the mesh has none");
+    double const position = max ? max->first : quantile(e.distance, e.weight, 0.99);
+    double const normal = max ? max->second : quantile(e.angle, e.weight, 0.99);
+    ErrorView const view = draw_error(e, job.frame, position, normal, threads);
+    add_run(job.header, job, threads, clock.seconds());
+    job.header.config.emplace_back("width", std::int64_t(width));
+    job.header.config.emplace_back("height", std::int64_t(height));
+    job.header.config.emplace_back("view", o.view);
+    job.header.config.emplace_back("level", std::int64_t(level));
+    std::vector<ErrorRow> const rows{
+        error_row("position", "equal parameter", "diagonal", e.position_statistics()),
+        error_row("normal", "equal parameter", "radians", e.normal_statistics())};
+    if (!o.output.empty())
+        write_figure(
+            {2,
+             {{&view.position, o.scheme + ": position"}, {&view.normal, o.scheme + ": normal"}},
+             {{"distance / diagonal", position}, {"angle, radians", normal}}},
+            o.output);
+    if (!o.json.empty()) write_result(o.json, compare_report(job.header, e.diagonal, rows));
+    if (o.json != "-") fmt::print("{}", compare_table(rows));
+    return 0;
+}
+
+} // namespace
+
 int run_draw(Options const& o)
 {
     if (!o.output.empty()) check_image_path(o.output);
-    auto const view = view_from_name(o.view);
+    auto const view = o.view == "error" || o.view == "cage" ? View::Lit : view_from_name(o.view);
     if (!view)
         throw Error("--view is '" + o.view +
-                    "', it must be lit, normals, patches, depth, wire or coverage");
+                    "', it must be lit, normals, patches, depth, wire, coverage, cage or error");
     auto const [width, height] = parse_size(o.size);
     Job job = prepare(o, "draw");
     FrameSettings& f = job.frame;
@@ -215,6 +276,7 @@ int run_draw(Options const& o)
     f.height = height;
     f.view = *view;
     f.camera = parse_camera(o.camera, points_to_show(job), float(width) / float(height));
+    if (o.view == "error") return run_error_view(o, job, width, height);
     f.cull = parse_cull(o.cull);
     f.samples = o.samples;
     f.adaptive = parse_tess_edge(o.tess_edge);
@@ -241,9 +303,12 @@ int run_draw(Options const& o)
     std::vector<SequenceFrame> sequence;
     for (std::size_t i = 0; i < job.poses.size(); ++i) {
         f.pose = job.poses[i].pose;
-        draw_frame(*job.patches, f, threads, frame, [&](std::size_t n, std::size_t all) {
-            bar(i * all + n, job.poses.size() * all);
-        });
+        if (o.view == "cage")
+            draw_cage(*job.prepared.mesh, f, threads, frame);
+        else
+            draw_frame(*job.patches, f, threads, frame, [&](std::size_t n, std::size_t all) {
+                bar(i * all + n, job.poses.size() * all);
+            });
         if (job.poses.size() == 1) break;
         sequence.push_back({job.poses[i].phase, f.pose->bytes(), frame.statistics,
                             sha256_of_targets(frame.color, frame.depth)});
@@ -295,50 +360,180 @@ int run_compare(Options const& o)
         return c.first == "tess" || c.first == "partitioning" || c.first == "vertex_cache" ||
                c.first == "displace" || c.first == "animate";
     });
-    job.header.config.emplace_back("level", std::int64_t(o.level));
+    int const level = o.level.value_or(kCompareLevel);
+    job.header.config.emplace_back("level", std::int64_t(level));
     ThreadPool const threads(o.threads);
     Stopwatch const clock;
     SurfaceComparison const c =
-        compare_with_limit(*job.prepared.topology, *job.patches, job.frame, o.level, threads);
+        compare_with_limit(*job.prepared.topology, *job.patches, job.frame, level, threads);
     add_run(job.header, job, threads, clock.seconds());
-    auto const row = [](char const* quantity, char const* measure, char const* unit,
-                        ErrorStatistics const& e) {
-        return ErrorRow{quantity, measure, unit, e.max, e.mean, e.rms, e.samples};
-    };
     std::vector<ErrorRow> const rows{
-        row("position", "closest point, scheme to limit", "diagonal", c.to_limit),
-        row("position", "closest point, limit to scheme", "diagonal", c.from_limit),
-        row("position", "equal parameter", "diagonal", c.equal_position),
-        row("normal", "closest point, scheme to limit", "radians", c.normal_to_limit),
-        row("normal", "closest point, limit to scheme", "radians", c.normal_from_limit),
-        row("normal", "equal parameter", "radians", c.equal_normal)};
+        error_row("position", "closest point, scheme to limit", "diagonal", c.to_limit),
+        error_row("position", "closest point, limit to scheme", "diagonal", c.from_limit),
+        error_row("position", "equal parameter", "diagonal", c.equal_position),
+        error_row("normal", "closest point, scheme to limit", "radians", c.normal_to_limit),
+        error_row("normal", "closest point, limit to scheme", "radians", c.normal_from_limit),
+        error_row("normal", "equal parameter", "radians", c.equal_normal)};
     if (!o.json.empty()) write_result(o.json, compare_report(job.header, c.diagonal, rows));
     if (o.json != "-") fmt::print("{}", compare_table(rows));
     return 0;
 }
 
-int run_reproduce(Options const& o)
+int run_cost(Options const& o)
 {
-    if (o.reproduce != "loop09-table3")
-        throw Error("'" + o.reproduce + "' is not known; there is loop09-table3");
-    ReportHeader header{
-        "reproduce",
-        {{"name", o.reproduce}, {"level", std::int64_t(o.level)}, {"contraction", o.contraction}},
-        {},
-        {},
-        {}};
-    std::vector<ControlMesh> meshes;
-    for (std::string_view name : kLoop09Table3Models) {
-        Model model = load_model(o.models + "/" + std::string(name) + ".obj");
-        header.inputs.emplace_back(model.name, model.sha256);
-        meshes.push_back(std::move(model.mesh));
+    if (!o.output.empty()) check_image_path(o.output);
+    MachineModel const machine = load_machine_model(o.machine);
+    auto const [width, height] = parse_size(o.size);
+    Job job = prepare(o, "cost");
+    FrameSettings& f = job.frame;
+    f.width = width;
+    f.height = height;
+    f.camera = parse_camera(o.camera, points_to_show(job), float(width) / float(height));
+    f.adaptive = parse_tess_edge(o.tess_edge);
+    f.vertex_cache = machine.vertex_cache;
+    Config& c = job.header.config;
+    for (auto& [key, value] : c)
+        if (key == "vertex_cache") value = name_of(f.vertex_cache);
+    c.emplace_back("machine", std::filesystem::path(o.machine).filename().string());
+    c.emplace_back("tess_edge", o.tess_edge);
+    c.emplace_back("geometry_only", o.geometry_only);
+    if (!o.geometry_only) {
+        c.emplace_back("width", std::int64_t(width));
+        c.emplace_back("height", std::int64_t(height));
     }
     ThreadPool const threads(o.threads);
-    ProgressBar bar;
     Stopwatch const clock;
-    PaperTable const table =
-        reproduce_loop09_table3(meshes, o.level, parse_machine(o), threads,
+    DrawStatistics const statistics = o.geometry_only
+                                          ? visit_surface(*job.patches, f, threads, {})
+                                          : draw_frame(*job.patches, f, threads).statistics;
+    add_run(job.header, job, threads, clock.seconds());
+    DrawCost const cost = estimate_cost(machine, statistics);
+    CostSummary summary{machine.name, cost.bound, machine.overhead, cost.shaders, cost.seconds,
+                        {},           {}};
+    Roofline roofline{fmt::format("{} on {}", job.header.inputs[0].first, machine.name),
+                      machine.arithmetic,
+                      16 * machine.any_fetch,
+                      {}};
+    for (StageCost const& s : cost.stages) {
+        summary.rows.push_back({s.stage, s.bound(), s.arithmetic, s.fetch, s.memory, s.fixed,
+                                s.seconds(), s.operations, s.fetches, s.fetched_bytes,
+                                s.memory_bytes});
+        if (s.operations > 0 && s.fetches > 0 && s.seconds() > 0)
+            roofline.points.push_back(
+                {s.stage, s.operations / (16 * s.fetches), s.operations / s.seconds()});
+    }
+    summary.sources.assign(machine.sources.begin(), machine.sources.end());
+    if (!o.output.empty()) write_roofline(roofline, o.output);
+    if (!o.json.empty()) write_result(o.json, cost_report(job.header, summary));
+    if (o.json != "-") fmt::print("{}", cost_table(summary));
+    return 0;
+}
+
+namespace {
+
+constexpr std::string_view kReproducible[] = {
+    "loop09-table1",  "loop09-table2",   "loop09-table3",   "loop09-figure1", "loop09-figure3",
+    "loop09-figure9", "loop09-figure10", "loop09-figure11", "loop09-figure12"};
+
+ControlMesh model_of_paper(std::string const& path, ReportHeader& header)
+{
+    Model model = load_model(path);
+    header.inputs.emplace_back(model.name, model.sha256);
+    return std::move(model.mesh);
+}
+
+template <class Names>
+std::vector<ControlMesh> models_of_paper(Options const& o, Names const& names, ReportHeader& header)
+{
+    std::vector<ControlMesh> meshes;
+    for (std::string_view name : names)
+        meshes.push_back(model_of_paper(o.models + "/" + std::string(name) + ".obj", header));
+    return meshes;
+}
+
+// Built-in cages, and the paper's where they are there.
+std::vector<ControlMesh> models_of_figure(Options const& o, int number, ReportHeader& header)
+{
+    std::vector<ControlMesh> meshes;
+    auto const add_papers = [&] {
+        for (std::string_view name : kLoop09Table2Models) {
+            std::string const path = o.models + "/" + std::string(name) + ".obj";
+            if (std::filesystem::exists(path)) meshes.push_back(model_of_paper(path, header));
+        }
+    };
+    if (number == 11) add_papers();
+    if (number == 1 || number == 10) meshes.push_back(model_of_paper("jug", header));
+    if (number == 9 || number == 11) meshes.push_back(model_of_paper("golem", header));
+    if (number == 12)
+        for (BuiltinModel const& m : builtin_models())
+            meshes.push_back(model_of_paper(std::string(m.name), header));
+    if (number == 9 || number == 12) add_papers();
+    return meshes;
+}
+
+int run_figure(Options const& o, ReportHeader header, int number, ThreadPool const& threads)
+{
+    std::string const output = o.output.empty() ? o.reproduce + ".png" : o.output;
+    check_image_path(output);
+    if (!o.json.empty()) throw Error("--json is of tables; a figure is a picture");
+    FrameSettings s;
+    s.width = s.height = 360;
+    s.samples = 4;
+    s.tess_factor = 16;
+    s.machine = parse_machine(o);
+    s.background = {1, 1, 1, 1};
+    ProgressBar bar;
+    PaperFigure const figure =
+        reproduce_loop09_figure(number, models_of_figure(o, number, header), s, threads,
                                 [&](std::size_t n, std::size_t all) { bar(n, all); });
+    bar.clear();
+    Figure out{figure.columns, {}, {}};
+    for (PaperFigure::Panel const& p : figure.panels) out.panels.push_back({&p.picture, p.caption});
+    for (PaperFigure::Scale const& scale : figure.scales)
+        out.scales.push_back({scale.label, scale.max});
+    write_figure(out, output);
+    fmt::print("{}\n", output);
+    for (std::string const& remark : figure.remarks) fmt::print("{}\n", remark);
+    return 0;
+}
+
+} // namespace
+
+int run_reproduce(Options const& o)
+{
+    std::string known;
+    for (std::string_view name : kReproducible)
+        known += (known.empty() ? "" : ", ") + std::string(name);
+    if (std::find(std::begin(kReproducible), std::end(kReproducible), o.reproduce) ==
+        std::end(kReproducible))
+        throw Error("'" + o.reproduce + "' is not known; there is " + known);
+    ReportHeader header{"reproduce", {{"name", o.reproduce}}, {}, {}, {}};
+    ThreadPool const threads(o.threads);
+    std::string_view const figure = "loop09-figure";
+    if (o.reproduce.starts_with(figure))
+        return run_figure(o, header, std::stoi(o.reproduce.substr(figure.size())), threads);
+    if (!o.output.empty()) throw Error("-o is of figures; --json writes a table");
+
+    ProgressBar bar;
+    auto const progress = [&](std::size_t n, std::size_t all) { bar(n, all); };
+    Stopwatch const clock;
+    PaperTable table;
+    if (o.reproduce == "loop09-table1") {
+        ControlMesh const mesh = model_of_paper("golem", header);
+        table = reproduce_loop09_table1(mesh, load_machine_model("loop09-emulator"),
+                                        parse_machine(o), threads, progress)
+                    .table;
+    } else if (o.reproduce == "loop09-table2") {
+        auto const meshes = models_of_paper(o, kLoop09Table2Models, header);
+        table = reproduce_loop09_table2(meshes, load_machine_model("gtx260"), parse_machine(o),
+                                        threads, progress)
+                    .table;
+    } else {
+        int const level = o.level.value_or(3); // nearest to the paper, see the table's remarks
+        header.config.emplace_back("level", std::int64_t(level));
+        auto const meshes = models_of_paper(o, kLoop09Table3Models, header);
+        table = reproduce_loop09_table3(meshes, level, parse_machine(o), threads, progress);
+    }
     bar.clear();
     header.run = {{"threads", std::int64_t(threads.threads())}, {"seconds", clock.seconds()}};
     std::vector<PaperRow> rows;

@@ -196,7 +196,8 @@ private:
             p.GSInvocations = geometry_.invocations;
             StageStatistics& g = add_stage("geometry_shader", geometry_.invocations, geometry_);
             add_fetch(g, "vertices", ResourceKind::Vertex, geometry_.input_fetches,
-                      geometry_.input_touched, std::size_t(gs.input_floats()) * sizeof(float));
+                      geometry_.input_touched,
+                      std::size_t(gs.input_fetch_floats()) * sizeof(float));
             stages_.geometry_buffers().report(geometry_, g);
             g.output_bytes = p.GSPrimitives * std::uint64_t(gs.vertices_per_output()) *
                              std::uint64_t(gs.output().floats) * sizeof(float);

@@ -149,6 +149,7 @@ public:
     virtual int max_vertices() const = 0;
     virtual int instances() const = 0;
     virtual int input_floats() const = 0;
+    virtual int input_fetch_floats() const { return input_floats(); } ///< of one fetch
     virtual OutputLayout output() const = 0;
     virtual std::vector<ResourceInfo> resources() const = 0;
     virtual void run(GeometryBatch const& batch, GeometryResult& result, StageCounters& counters,

@@ -283,15 +283,59 @@ std::string paper_report(ReportHeader const& header, std::string const& title,
 std::string paper_table(std::string const& title, std::vector<PaperRow> const& rows,
                         std::vector<std::string> const& remarks)
 {
-    std::string out = fmt::format("{}\n\n{:<30} {:<46} {:>9} {:>9} {:>6}\n", title, "", "", "paper",
+    std::string out = fmt::format("{}\n\n{:<38} {:<46} {:>9} {:>9} {:>6}\n", title, "", "", "paper",
                                   "ours", "ratio");
     std::string row;
     for (PaperRow const& r : rows) {
-        out += fmt::format("{:<30} {:<46} {:>9.4g} {:>9.4g} {:>6.2f}\n", r.row == row ? "" : r.row,
+        out += fmt::format("{:<38} {:<46} {:>9.4g} {:>9.4g} {:>6.2f}\n", r.row == row ? "" : r.row,
                            r.column, r.paper, r.ours, r.ours / r.paper);
         row = r.row;
     }
     for (std::string const& remark : remarks) out += "\n" + remark + "\n";
+    return out;
+}
+
+std::string cost_report(ReportHeader const& header, CostSummary const& c)
+{
+    Json j = start(header);
+    j["machine"] = c.machine;
+    j["sources"] = Json::object();
+    for (auto const& [number, source] : c.sources) j["sources"][number] = source;
+    j["stages"] = Json::array();
+    for (CostRow const& r : c.rows)
+        j["stages"].push_back({{"stage", r.stage},
+                               {"seconds", r.seconds},
+                               {"bound", r.bound},
+                               {"arithmetic_seconds", r.arithmetic},
+                               {"fetch_seconds", r.fetch},
+                               {"memory_seconds", r.memory},
+                               {"fixed_function_seconds", r.fixed},
+                               {"operations", r.operations},
+                               {"fetches", r.fetches},
+                               {"fetched_bytes", r.fetched_bytes},
+                               {"memory_bytes", r.memory_bytes}});
+    j["overhead_seconds"] = c.overhead;
+    j["shader_seconds"] = c.shaders;
+    j["seconds"] = c.seconds;
+    j["bound"] = c.bound;
+    return finish(std::move(j), header, [](Sha256&) {});
+}
+
+std::string cost_table(CostSummary const& c)
+{
+    auto const ms = [](double s) {
+        return s == 0 ? std::string("-") : fmt::format("{:.4f}", 1e3 * s);
+    };
+    std::string out =
+        fmt::format("{}\n\n{:<16} {:>11} {:>11} {:>11} {:>11} {:>11}  {}\n", c.machine, "stage, ms",
+                    "arithmetic", "fetch", "memory", "rate", "all", "bound by");
+    for (CostRow const& r : c.rows)
+        out += fmt::format("{:<16} {:>11} {:>11} {:>11} {:>11} {:>11}  {}\n", r.stage,
+                           ms(r.arithmetic), ms(r.fetch), ms(r.memory), ms(r.fixed), ms(r.seconds),
+                           r.bound);
+    out +=
+        fmt::format("\nshaders {} ms, overhead {} ms, draw {} ms ({:.1f} a second), bound by {}\n",
+                    ms(c.shaders), ms(c.overhead), ms(c.seconds), 1 / c.seconds, c.bound);
     return out;
 }
 

@@ -83,6 +83,23 @@ std::string paper_report(ReportHeader const& header, std::string const& title,
 std::string paper_table(std::string const& title, std::vector<PaperRow> const& rows,
                         std::vector<std::string> const& remarks);
 
+/// A stage's predicted time.
+struct CostRow {
+    std::string stage, bound;
+    double arithmetic, fetch, memory, fixed, seconds; ///< seconds
+    double operations, fetches, fetched_bytes, memory_bytes;
+};
+/// A draw on a machine.
+struct CostSummary {
+    std::string machine, bound;
+    double overhead, shaders, seconds;
+    std::vector<CostRow> rows;
+    std::vector<std::pair<std::string, std::string>> sources; ///< of the machine's numbers
+};
+/// cost
+std::string cost_report(ReportHeader const& header, CostSummary const& cost);
+std::string cost_table(CostSummary const& cost);
+
 /// Counters by stage as text for a terminal.
 std::string counters_table(DrawStatistics const& statistics);
 std::string info_table(MeshSummary const& summary, std::vector<PatchCount> const& patches);

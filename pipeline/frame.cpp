@@ -66,12 +66,8 @@ std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
     case View::Normals:
         return on_surface(NormalPixelShader{}, displacement, machine);
     case View::Patches: {
-        constexpr std::array<float, 3> kColors[] = {{0.42f, 0.66f, 0.92f},
-                                                    {1.0f, 0.66f, 0.28f},
-                                                    {0.42f, 0.80f, 0.46f},
-                                                    {0.88f, 0.45f, 0.62f}};
         PatchPixelShader s;
-        s.color = kColors[std::size_t(kind.color_index) % std::size(kColors)];
+        s.color = patch_kind_color(kind.color_index);
         s.light = array(light);
         return on_surface(s, displacement, machine);
     }
@@ -82,6 +78,14 @@ std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
         return make_pixel_program(s, machine);
     }
     }
+}
+
+std::array<float, 3> patch_kind_color(int color_index)
+{
+    // As LOOP09's figure 1: gold for regular, purple for irregular quads, green for triangles.
+    constexpr std::array<float, 3> kColors[] = {
+        {0.96f, 0.78f, 0.36f}, {0.66f, 0.54f, 0.86f}, {0.44f, 0.80f, 0.48f}, {0.88f, 0.45f, 0.50f}};
+    return kColors[std::size_t(color_index) % std::size(kColors)];
 }
 
 TessFactorRule tess_factor_rule(AdaptiveFactors const& adaptive, Camera const& camera, int height,

@@ -23,6 +23,9 @@ std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
                                               Displacement const* displacement,
                                               Machine const& machine);
 
+/// The colour of a patch kind in pictures, by its color_index.
+std::array<float, 3> patch_kind_color(int color_index);
+
 /// Tess factors from the camera, an edge at a time.
 struct AdaptiveFactors {
     enum class Kind { None, Pixels, Distance };

@@ -25,6 +25,7 @@ public:
     int max_vertices() const override { return hull_->control_points() + hull_->patch_constants(); }
     int instances() const override { return 1; }
     int input_floats() const override { return hull_->input_floats(); }
+    int input_fetch_floats() const override { return hull_->input_fetch_floats(); }
     OutputLayout output() const override
     {
         return {std::max(hull_->control_point_floats(), hull_->patch_constant_floats()), 0, 0};

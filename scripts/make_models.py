@@ -12,6 +12,7 @@ OUT = pathlib.Path(__file__).resolve().parent.parent / "models"
 class Cage:
     def __init__(self):
         self.v, self.f = [], []
+        self.vt, self.ft = [], []  # texture coordinates, and those of the faces' corners
 
     def vertex(self, x, y, z):
         self.v.append((x, y, z))
@@ -37,8 +38,13 @@ class Cage:
             out.write("# %s\n# SPDX-License-Identifier: Apache-2.0\n" % about)
             for p in self.v:
                 out.write("v %s %s %s\n" % tuple(map(q, p)))
-            for f in self.f:
-                out.write("f %s\n" % " ".join(str(i + 1) for i in f))
+            for t in self.vt:
+                out.write("vt %s %s\n" % tuple(map(q, t)))
+            if not self.ft:
+                for f in self.f:
+                    out.write("f %s\n" % " ".join(str(i + 1) for i in f))
+            for f, t in zip(self.f, self.ft):
+                out.write("f %s\n" % " ".join("%d/%d" % (i + 1, k + 1) for i, k in zip(f, t)))
 
 
 def jug():
@@ -133,7 +139,54 @@ def star():
     c.write("saddle_star", "A monkey saddle around one vertex of valence 6, open all round.")
 
 
+def golem():
+    """The surface of a figure of blocks: quads only, closed, a texture chart for each of six directions."""
+    blocks = {(x, y, 0) for x in (0, 1, 2) for y in (2, 3)}
+    blocks |= {(x, y, 0) for x in (0, 2) for y in (0, 1)}
+    blocks |= {(x, 3, 0) for x in (-2, -1, 3, 4)} | {(1, 4, 0), (1, 5, 0), (0, 0, 1), (2, 0, 1)}
+    c = Cage()
+    ids, charts = {}, {}
+    # Of each direction: the corners of a block's face, counter-clockwise from outside.
+    faces = {
+        (1, 0, 0): ((1, 0, 1), (1, 0, 0), (1, 1, 0), (1, 1, 1)), (-1, 0, 0): ((0, 0, 0), (0, 0, 1), (0, 1, 1), (0, 1, 0)),
+        (0, 1, 0): ((0, 1, 1), (1, 1, 1), (1, 1, 0), (0, 1, 0)), (0, -1, 0): ((0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)),
+        (0, 0, 1): ((0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)), (0, 0, -1): ((1, 0, 0), (0, 0, 0), (0, 1, 0), (1, 1, 0))}
+
+    def place(p):
+        x, y, z = p[0] - 1.5, p[1] - 3, p[2] - 0.5
+        if p[1] >= 5:  # a round head
+            x, z = 1.5 * x, 1.5 * z
+        if abs(x) > 2.9:  # fists
+            z *= 1.4
+        return (0.4 * x, 0.4 * y, 0.44 * z)
+
+    def corner(p):
+        if p not in ids:
+            ids[p] = c.vertex(*place(p))
+        return ids[p]
+
+    def coordinates(direction, p):
+        key = (direction, p)
+        if key not in charts:
+            k = list(faces).index(direction)
+            axes = [a for a in range(3) if direction[a] == 0]
+            u = (p[axes[0]] + 2) / 8 if axes[0] == 0 else p[axes[0]] / 8
+            charts[key] = len(c.vt)
+            c.vt.append(((k % 3 + 0.05 + 0.9 * u) / 3, (k // 3 + 0.05 + 0.9 * p[axes[1]] / 8) / 2))
+        return charts[key]
+
+    for b in sorted(blocks):
+        for direction, corners in faces.items():
+            if tuple(i + d for i, d in zip(b, direction)) in blocks:
+                continue
+            at = [tuple(i + k for i, k in zip(b, corner_)) for corner_ in corners]
+            c.f.append(tuple(corner(p) for p in at))
+            c.ft.append(tuple(coordinates(direction, p) for p in at))
+    c.write("golem", "A figure of blocks: quads only, closed, irregular nearly everywhere; texture coordinates with seams.")
+
+
 if __name__ == "__main__":
     jug()
     spindle()
     star()
+    golem()

@@ -55,7 +55,8 @@ TEST(Program, HelpAndVersionExitZeroOnEachVerb)
 {
     EXPECT_EQ(run("--help").status, 0);
     EXPECT_EQ(run("--version").status, 0);
-    for (char const* verb : {"draw", "export", "tessellate", "info", "schemes", "models"}) {
+    for (char const* verb : {"draw", "export", "tessellate", "compare", "cost", "reproduce", "diff",
+                             "info", "schemes", "models"}) {
         Result const help = run(std::string(verb) + " --help");
         EXPECT_EQ(help.status, 0) << verb;
         EXPECT_NE(help.out.find("Examples:"), std::string::npos) << verb;
@@ -68,7 +69,7 @@ TEST(Program, HelpAndVersionExitZeroOnEachVerb)
 TEST(Program, AVerbWithoutItsArgumentPrintsHelpAndExitsTwo)
 {
     for (char const* verb :
-         {"", "draw", "export", "tessellate", "compare", "reproduce", "diff", "info"}) {
+         {"", "draw", "export", "tessellate", "compare", "cost", "reproduce", "diff", "info"}) {
         Result const r = run(verb);
         EXPECT_EQ(r.status, 2) << verb;
         EXPECT_TRUE(r.out.empty()) << verb;
@@ -105,6 +106,15 @@ TEST(Program, BadUsageExitsTwoWithOneLineThatNamesTheValue)
              {"draw jug --scheme pm", "closed meshes only"},
              {"compare jug --level 7", "7"},
              {"reproduce table9", "loop09-table3"},
+             {"reproduce loop09-figure2", "loop09-figure12"},
+             {"reproduce loop09-table2 --models nowhere", "nowhere/monsterfrog.obj"},
+             {"reproduce loop09-table1 -o a.png", "figures"},
+             {"reproduce loop09-figure3 --json -", "picture"},
+             {"cost jug --machine nowhere", "gtx260"},
+             {"draw jug --view error --error-max 1", "POSITION,ANGLE"},
+             {"draw jug --view error --error-max 0,1", "above 0"},
+             {"draw spindle --view error", "needs quads"},
+             {"draw jug --view error --displace studs", "--displace"},
              {"reproduce loop09-table3 --models nowhere", "nowhere/monsterfrog.obj"},
              {"diff nowhere.json nowhere.json", "nowhere.json"},
              {"draw jug -o picture.bmp", ".bmp"},
@@ -183,6 +193,42 @@ TEST(Program, ASequenceHasAPictureAndCountersForEachFrame)
         }
         EXPECT_EQ(Json::parse(run(options + " -j 1 --lanes 4 --json -").out)["hash"], j["hash"]);
     }
+}
+
+TEST(Program, CostGivesSecondsByStageAndARoofline)
+{
+    fs::path const picture = scratch() / "roof.png";
+    Result const r = run("cost jug --size 64x48 -o " + picture.string() + " --json -");
+    ASSERT_EQ(r.status, 0) << r.err;
+    Json const j = Json::parse(r.out);
+    EXPECT_EQ(j["schema"], "tessemu.cost/1");
+    EXPECT_EQ(j["machine"], "GeForce GTX 260");
+    double shaders = 0;
+    for (Json const& s : j["stages"])
+        if (s["stage"].get<std::string>().ends_with("_shader"))
+            shaders += s["seconds"].get<double>();
+    EXPECT_NEAR(shaders, j["shader_seconds"].get<double>(), 1e-12);
+    EXPECT_GT(j["sources"].size(), 5u);
+    EXPECT_GT(fs::file_size(picture), 1000u);
+    // The prediction is a result as any other: the same on any host.
+    EXPECT_EQ(Json::parse(run("cost jug --size 64x48 -j 1 --lanes 4 --json -").out)["hash"],
+              j["hash"]);
+}
+
+TEST(Program, ViewsOfErrorsAndControlMeshesArePictures)
+{
+    fs::path const picture = scratch() / "view.png";
+    for (char const* view : {"error", "cage"}) {
+        Result const r = run(std::string("draw golem --size 64x48 --level 2 --view ") + view +
+                             " -o " + picture.string());
+        EXPECT_EQ(r.status, 0) << r.err;
+        EXPECT_GT(fs::file_size(picture), 500u);
+        fs::remove(picture);
+    }
+    Result const r = run("reproduce loop09-figure3 -o " + picture.string());
+    EXPECT_EQ(r.status, 0) << r.err;
+    EXPECT_GT(fs::file_size(picture), 1000u);
+    EXPECT_EQ(run("reproduce loop09-table1 --json -").status, 0);
 }
 
 TEST(Program, Direct3D10DrawsTheSamePicture)

@@ -132,6 +132,8 @@ TEST(InstancedTessellation, MovesTheCostsToOtherStages)
             EXPECT_EQ(reads(stage(ten, "vertex_shader"), name),
                       reads(stage(eleven, "domain_shader"), name))
                 << model << " " << scheme << " " << name;
+        EXPECT_EQ(reads(stage(ten, "geometry_shader"), "vertices"),
+                  reads(stage(eleven, "hull_shader"), "input_control_points"));
         // What was streamed out is the patches' control points and constants.
         std::uint64_t streamed = 0;
         for (DrawPass const& pass : frame_passes(*m.patches, FrameSettings{}, PassSettings{})) {

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/cost.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessemu {
+
+namespace {
+
+constexpr double kFetchBytes = 16;
+
+bool is_cached(ResourceKind kind)
+{
+    return kind == ResourceKind::Buffer || kind == ResourceKind::Texture;
+}
+
+// On the chip: what stages hand to each other.
+bool stays_on_chip(ResourceKind kind)
+{
+    return kind == ResourceKind::ControlPoint || kind == ResourceKind::PatchConstant ||
+           kind == ResourceKind::Shared;
+}
+
+double memory_bytes(MachineModel const& m, FetchStatistics const& f)
+{
+    if (stays_on_chip(f.kind)) return 0;
+    auto const bytes = double(f.bytes), unique = double(f.unique_bytes);
+    if (!is_cached(f.kind) || unique == 0) return bytes;
+    return unique + std::max(0.0, bytes - unique) * std::max(0.0, 1 - m.cache_bytes / unique);
+}
+
+// A hull shader's groups do not span patches: lanes beyond the last control point idle.
+double idle_lanes(MachineModel const& m, PipelineStatistics const& p)
+{
+    double const patches = double(p.HSInvocations);
+    if (patches == 0 || m.group_width <= 1) return 1;
+    double useful = 0, run = 0;
+    for (double all : {double(p.HSControlPointInvocations), double(p.HSPatchConstantInvocations)}) {
+        double const each = all / patches;
+        useful += each;
+        run += std::ceil(each / m.group_width) * m.group_width;
+    }
+    return run / useful;
+}
+
+} // namespace
+
+double fetch_count(FetchStatistics const& f)
+{
+    if (f.count == 0) return 0;
+    double const each = double(f.bytes) / double(f.count);
+    bool const scalar = each <= 4 && is_cached(f.kind);
+    return double(f.count) * (scalar ? each / kFetchBytes : std::ceil(each / kFetchBytes));
+}
+
+std::string StageCost::bound() const
+{
+    if (seconds() == 0) return "-";
+    if (fixed > 0) return "rate";
+    if (memory > arithmetic + fetch) return "memory";
+    return arithmetic > fetch ? "arithmetic" : "fetch";
+}
+
+DrawCost estimate_cost(MachineModel const& m, DrawStatistics const& s)
+{
+    DrawCost out;
+    PipelineStatistics const& p = s.pipeline;
+    double memory = 0, longest_shader = -1, longest_fixed = 0;
+    std::string shader, fixed;
+    for (StageStatistics const& stage : s.stages) {
+        StageCost c;
+        c.stage = stage.stage;
+        bool const is_shader = stage.stage.ends_with("_shader");
+        FlopCount const& f = stage.flops;
+        double const special = double(f.div + f.sqrt + f.rsqrt);
+        c.operations = double(f.add + f.mul + f.mad) + special;
+        double const idle = stage.stage == "hull_shader" ? idle_lanes(m, p) : 1;
+        c.arithmetic = idle * ((c.operations - special) / m.arithmetic + special / m.special);
+        for (FetchStatistics const& r : stage.fetches) {
+            double const n = fetch_count(r);
+            c.fetches += n;
+            c.fetched_bytes += double(r.bytes);
+            // The input assembler and the vertex cache fetch ahead; only their traffic counts.
+            if (is_shader) c.fetch += n / m.fetch_rate(r.kind);
+            c.memory_bytes += memory_bytes(m, r);
+        }
+        if (stage.stage == "stream_output" || stage.stage == "output_merger")
+            c.memory_bytes += double(stage.output_bytes);
+        c.memory = c.memory_bytes / m.bandwidth;
+        if (stage.stage == "tessellator") c.fixed = double(p.DSInvocations) / m.tessellator;
+        if (stage.stage == "rasterizer")
+            c.fixed =
+                std::max(double(p.CInvocations) / m.setup, double(p.PSInvocations) / m.raster);
+        memory += c.memory;
+        if (is_shader) {
+            out.shaders += c.seconds();
+            if (c.seconds() > longest_shader) longest_shader = c.seconds(), shader = c.stage;
+        } else if (c.seconds() > longest_fixed) {
+            longest_fixed = c.seconds(), fixed = c.stage;
+        }
+        out.stages.push_back(c);
+    }
+    double const work = std::max({out.shaders, longest_fixed, memory});
+    out.bound = work == 0               ? "-"
+                : work == out.shaders   ? shader
+                : work == longest_fixed ? fixed
+                                        : "memory";
+    out.seconds = m.overhead + work;
+    return out;
+}
+
+} // namespace tessemu

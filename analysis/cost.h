@@ -1,0 +1,46 @@
+// From what a draw counted to the time it would take on a machine.
+//
+// A stage of shaders takes the time of its arithmetic and, after it, of its fetches, or that of its
+// memory traffic where that is longer; all such stages share the machine's processors, so their
+// times add up. Tessellator, set-up and rasterizer work beside them. The draw takes as long as the
+// slowest of these, and the machine's overhead.
+//
+// A fetch brings up to 16 bytes: a record counts in whole ones; scalars of a buffer, which
+// neighbouring invocations read one after the other, share them (LOOP09 4.3 packs its stencils in a
+// texture). Of buffers and textures memory sees every element once, and again the part of the
+// repeated reads that the cache has no room for.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "analysis/machine_model.h"
+#include "emu/statistics.h"
+
+namespace tessemu {
+
+/// Seconds, by resource; and what they come from.
+struct StageCost {
+    std::string stage;
+    double arithmetic = 0, fetch = 0, memory = 0, fixed = 0;
+    double operations = 0, fetches = 0, fetched_bytes = 0, memory_bytes = 0;
+
+    double seconds() const { return fixed + std::max(arithmetic + fetch, memory); }
+    /// "arithmetic", "fetch", "memory", "rate" of a fixed-function stage, or "-" for no time at
+    /// all.
+    std::string bound() const;
+};
+
+struct DrawCost {
+    std::vector<StageCost> stages;
+    double shaders = 0; ///< sum over the shader stages
+    double seconds = 0; ///< with the overhead
+    std::string bound;  ///< the stage that the draw waits for
+};
+
+/// \param statistics  of a draw, or of several added up
+DrawCost estimate_cost(MachineModel const& machine, DrawStatistics const& statistics);
+
+/// Fetches of up to 16 bytes.
+double fetch_count(FetchStatistics const& f);
+
+} // namespace tessemu

@@ -1,0 +1,46 @@
+// Figures: pictures side by side with captions and colour scales.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/graphics_state.h"
+
+#include <filesystem>
+
+namespace tessemu {
+
+/// A scale from blue, 0, to red, `max`, under a column of pictures.
+struct ColorScale {
+    std::string label; ///< what is shown, with its unit
+    double max;
+};
+
+struct Figure {
+    struct Panel {
+        ColorTarget const* picture; ///< of one sample; all of one size
+        std::string caption;
+    };
+    int columns = 1;
+    std::vector<Panel> panels;      ///< row after row
+    std::vector<ColorScale> scales; ///< one a column, or none
+};
+
+/// Writes a figure as .png or .exr. Atomic. Throws WriteError, among other things for a machine
+/// without the font DejaVu Sans.
+void write_figure(Figure const& figure, std::filesystem::path const& path);
+
+/// Arithmetic against fetches: what stages do, under what the machine can.
+struct Roofline {
+    struct Point {
+        std::string label;
+        double operations_per_byte, operations_per_second;
+    };
+    std::string title;
+    double operations_per_second; ///< the flat roof; infinite where it is not known
+    double bytes_per_second;      ///< the slope
+    std::vector<Point> points;
+};
+/// Both axes logarithmic. As write_figure.
+void write_roofline(Roofline const& roofline, std::filesystem::path const& path);
+
+} // namespace tessemu
