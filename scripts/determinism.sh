@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Builds the program with g++ and clang at -O0 and -O2, draws and exports four cages with -j 1, 2, 3, 8 and lanes 4, 8, 16,
-# and compares the hashes of all runs. Exit 1 if any differ. Blending, stencil and stream output are in a hash that the test
+# Builds the program with g++ and clang at -O0 and -O2, draws and exports five cages with -j 1, 2, 3, 8 and lanes 4, 8, 16,
+# and every scheme displaced, animated, with adaptive factors and by the Direct3D 10 path, and compares the hashes of all runs. Exit 1 if any differ. Blending, stencil and stream output are in a hash that the test
 # Determinism.R1SamplesBlendingAndStreamOutputHaveOneHash compares in every preset.
 set -euo pipefail
 source "$(dirname "$0")/setup.sh"
 install_packages
-models=(jug spindle saddle_star)
+models=(jug spindle saddle_star golem)
 polygons=build/determinism/polygons.obj
 mkdir -p build/determinism
 # A cage with n-gons: a pentagonal prism.
@@ -64,6 +64,21 @@ for compiler in g++ clang++; do
                     check "export $model" "$("$folder/tessemu" export "$model" -o "$folder/mesh.ply" $options \
                         2>/dev/null | hash_of)" "$what"
                 done
+            done
+        done
+        # All schemes on the golem, which each of them can draw.
+        for scheme in gregory-stencil gregory-two-stage acc pm; do
+            for run in "1 4" "3 8" "8 16"; do
+                read -r threads lanes <<<"$run"
+                what="$compiler -$level -j $threads --lanes $lanes"
+                for variant in "--contraction none" "--contraction mixed:5" "--displace studs --animate sway --phase 0.3" \
+                    "--displace docs/images/roofline.png --contraction all" "--tess-edge pixels=6" "--direct3d 10" \
+                    "--view error --level 3"; do
+                    check "draw golem $scheme $variant" "$("$folder/tessemu" draw golem --scheme $scheme --size 200x150 \
+                        --tess 5.3 -j $threads --lanes $lanes --json - $variant 2>/dev/null | hash_of)" "$what"
+                done
+                check "compare golem $scheme" "$("$folder/tessemu" compare golem --scheme $scheme --level 3 \
+                    -j $threads --lanes $lanes --json - 2>/dev/null | hash_of)" "$what"
             done
         done
     done

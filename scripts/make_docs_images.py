@@ -2,7 +2,9 @@
 """Draws the pictures of docs/images with the built program. Standard library only."""
 import json
 import pathlib
+import shutil
 import subprocess
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 OUT = ROOT / "docs" / "images"
@@ -14,8 +16,7 @@ def run(*arguments):
 
 
 def pictures():
-    for name, options in (("jug.png", []), ("jug_patches.png", ["--view", "patches"])):
-        run("draw", "jug", "--tess", "24", "--size", "640x640", *options, "-o", str(OUT / name))
+    run("draw", "jug", "--tess", "24", "--size", "640x640", "--view", "patches", "-o", str(OUT / "jug_patches.png"))
     run("draw", "saddle_star", "--scheme", "acc", "--view", "patches", "--tess", "12", "--size", "640x420",
         "-o", str(OUT / "saddle_star_acc.png"))
     run("draw", "spindle", "--scheme", "pm", "--view", "patches", "--tess", "12", "--size", "640x420",
@@ -23,6 +24,17 @@ def pictures():
     for view in ("wire", "coverage"):
         run("draw", "jug", "--tess", "5", "--view", view, "--size", "480x480", "--samples", "4",
             "-o", str(OUT / f"jug_{view}.png"))
+
+
+def figures():
+    for number in (1, 9, 11):
+        run("reproduce", "loop09-figure%d" % number, "--models", "nowhere", "-o", str(OUT / ("figure%d.png" % number)))
+    run("cost", "golem", "--tess", "24", "-o", str(OUT / "roofline.png"))
+    with tempfile.TemporaryDirectory() as folder:
+        run("draw", "golem", "--animate", "sway", "--frames", "4", "--tess", "16", "--size", "320x320", "--samples", "4",
+            "--camera", "from=.3,.2,1", "-o", folder + "/sway.png")
+        for i in (1, 3):
+            shutil.copy(folder + "/sway_%04d.png" % i, OUT / ("sway%d.png" % i))
 
 
 def patterns():
@@ -84,5 +96,6 @@ def stages():
 if __name__ == "__main__":
     OUT.mkdir(parents=True, exist_ok=True)
     pictures()
+    figures()
     patterns()
     stages()
