@@ -174,6 +174,36 @@ int main(int argc, char** argv)
         ->capture_default_str();
     compare->add_option("--json", o.json, "write the result as JSON; '-' is standard output");
 
+    CLI::App* check =
+        verb("check",
+             "is the surface closed? Verdicts on edges, coverage and rays; exit status 1 if one "
+             "fails",
+             "  tessemu check golem\n"
+             "  tessemu check cage.obj --tess 7.3 --contraction mixed:5 --displace studs\n"
+             "  tessemu check golem --break order --parity 0.02 -o cracks.png --json cracks.json",
+             run_check);
+    check->add_option("MODEL", o.model, "OBJ file or built-in cage")->required();
+    check->add_option("-o", o.output, "the lit picture with cracks in red, .png or .exr");
+    check
+        ->add_option("--break", o.mistake,
+                     "plant a known mistake: order, contraction, factors, normals, fold, weights, "
+                     "topleft")
+        ->capture_default_str();
+    check
+        ->add_option(
+            "--break-face", o.mistaken_face,
+            "whose patch has it, where it is one patch's [the first that shares all edges]")
+        ->check(CLI::Range(std::int64_t(0), std::int64_t(1) << 32));
+    check->add_option(
+        "--parity", o.parity,
+        "move every point by so much along its normal, out or in by the parity of its "
+        "bits: cracks of one ulp open [0]");
+    check->add_option("--rays", o.rays, "of each kind; 0: none")
+        ->check(CLI::Range(std::int64_t(0), std::int64_t(1000000000)))
+        ->capture_default_str();
+    add_picture_options(*check, o);
+    add_surface_options(*check, o);
+
     CLI::App* cost =
         verb("cost", "predicted time by stage on a described machine, and what bounds it",
              "  tessemu cost jug --tess 16\n"
@@ -243,7 +273,7 @@ int main(int argc, char** argv)
         return 2;
     }
     if (argc == 2)
-        for (CLI::App* v : {draw, exporter, tess, compare, cost, reproduce, diff, info})
+        for (CLI::App* v : {draw, exporter, tess, compare, check, cost, reproduce, diff, info})
             if (v->get_name() == argv[1]) {
                 fmt::print(stderr, "{}", v->help());
                 return 2;

@@ -13,14 +13,15 @@ struct Options {
     std::string camera = "auto", view = "lit", normals = "frozen", contraction = "none",
                 cull = "none";
     std::string vertex_cache = "fifo:16", tess_edge = "none", displace = "none", animate = "none",
-                error_max = "auto";
+                error_max = "auto", mistake = "none";
     std::string reproduce, models = ".", machine = "gtx260";
     std::string domain = "quad", primitive = "triangle_cw", batch;
     std::vector<double> factors;
     std::vector<std::string> set;
     std::string other;
     double tess = 8, tolerance = 0, phase = 0;
-    std::optional<double> displace_scale;
+    std::optional<double> displace_scale, parity;
+    std::int64_t rays = 200000, mistaken_face = 0;
     std::optional<int> level;
     int lanes = kNativeLanes, threads = 0, samples = 1, frames = 1, direct3d = 11;
     bool weld = false, all = false, geometry_only = false;

@@ -5,6 +5,7 @@
 #include "analysis/loop09_figures.h"
 #include "analysis/loop09_table3.h"
 #include "analysis/loop09_timing.h"
+#include "analysis/watertight.h"
 #include "io/atomic_file.h"
 #include "io/figure.h"
 #include "io/image_writer.h"
@@ -377,6 +378,72 @@ int run_compare(Options const& o)
     if (!o.json.empty()) write_result(o.json, compare_report(job.header, c.diagonal, rows));
     if (o.json != "-") fmt::print("{}", compare_table(rows));
     return 0;
+}
+
+int run_check(Options const& o)
+{
+    if (!o.output.empty()) check_image_path(o.output);
+    auto const mistake = mistake_from_name(o.mistake);
+    if (!mistake)
+        throw Error("--break is '" + o.mistake +
+                    "', it must be order, contraction, factors, normals, fold, weights or topleft");
+    auto const [width, height] = parse_size(o.size);
+    Job job = prepare(o, "check");
+    WatertightSettings s;
+    s.frame = job.frame;
+    s.frame.width = width;
+    s.frame.height = height;
+    s.frame.adaptive = parse_tess_edge(o.tess_edge);
+    s.frame.camera = parse_camera(o.camera, points_to_show(job), float(width) / float(height));
+    s.frame.parity = float(o.parity.value_or(0));
+    s.rays = std::uint64_t(o.rays);
+    s.list = 100000;
+    s.frame.mistake = plant_mistake(*job.prepared.topology, *mistake);
+    if (o.mistaken_face > 0) {
+        if (std::size_t(o.mistaken_face) > job.prepared.mesh->faces())
+            throw Error(fmt::format("--break-face is {}, the mesh has {} faces", o.mistaken_face,
+                                    job.prepared.mesh->faces()));
+        s.frame.mistake.face = std::uint32_t(o.mistaken_face - 1);
+    }
+    Config& c = job.header.config;
+    std::erase_if(c, [](auto const& entry) { return entry.first == "vertex_cache"; });
+    c.emplace_back("tess_edge", o.tess_edge);
+    c.emplace_back("width", std::int64_t(width));
+    c.emplace_back("height", std::int64_t(height));
+    c.emplace_back("rays", o.rays);
+    c.emplace_back("parity", double(s.frame.parity));
+    c.emplace_back("break", o.mistake);
+    if (*mistake != Mistake::None)
+        c.emplace_back("break_face", std::int64_t(s.frame.mistake.face) + 1);
+    ThreadPool const threads(o.threads);
+    Stopwatch const clock;
+    std::vector<CheckedVerdict> const verdicts =
+        check_watertight(*job.prepared.topology, *job.patches, s, threads);
+    add_run(job.header, job, threads, clock.seconds());
+    std::vector<VerdictRow> rows;
+    for (CheckedVerdict const& v : verdicts) {
+        VerdictRow row{v.name,
+                       std::string(name_of(v.verdict)),
+                       v.reason,
+                       v.checked,
+                       v.failures,
+                       {},
+                       v.name == "raycast"};
+        for (CrackSite const& site : v.sites)
+            row.sites.push_back({{site.face[0], site.face[1]},
+                                 {site.vertex[0], site.vertex[1]},
+                                 site.t,
+                                 site.component,
+                                 {site.bits[0], site.bits[1]},
+                                 site.ulp,
+                                 {site.pixel[0], site.pixel[1]},
+                                 site.text});
+        rows.push_back(std::move(row));
+    }
+    if (!o.output.empty()) write_image(draw_cracks(*job.patches, s, verdicts, threads), o.output);
+    if (!o.json.empty()) write_result(o.json, check_report(job.header, rows));
+    if (o.json != "-") fmt::print("{}", check_table(rows, 3));
+    return all_hold(verdicts) ? 0 : 1;
 }
 
 int run_cost(Options const& o)

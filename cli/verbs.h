@@ -11,6 +11,7 @@ namespace tessemu {
 int run_draw(Options const& o);
 int run_export(Options const& o);
 int run_compare(Options const& o);
+int run_check(Options const& o);
 int run_cost(Options const& o);
 int run_reproduce(Options const& o);
 int run_diff(Options const& o);

@@ -157,4 +157,23 @@ template <class T, class P> auto lanes_value(Contracted<T, P> x)
     return lanes_value(x.value);
 }
 
+/// HLSL's asuint: the bits of a number, as a signed integer. A scalar without values (a tally)
+/// gives 0.
+template <class T> constexpr int_of<T> asuint(T const& x)
+{
+    if constexpr (requires { lanes_value(x); }) {
+        auto const v = lanes_value(x);
+        if constexpr (std::same_as<std::remove_cvref_t<decltype(v)>, float>) {
+            return int_of<T>(std::bit_cast<std::int32_t>(v));
+        } else {
+            int_of<T> bits;
+            static_assert(sizeof bits.raw == sizeof v.raw);
+            __builtin_memcpy(&bits.raw, &v.raw, sizeof bits.raw);
+            return bits;
+        }
+    } else {
+        return int_of<T>(0);
+    }
+}
+
 } // namespace tessemu

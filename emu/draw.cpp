@@ -38,7 +38,7 @@ public:
           visit_(visit),
           threads_(threads),
           options_(options),
-          stages_(d_, call),
+          stages_(d_, call, options.mistakes),
           vs_buffers_(d_.vertex_shader->resources()),
           memory_(options.memory ? *options.memory : own_memory_),
           shaded_vertices_(memory_.parts().shaded_vertices)

@@ -17,11 +17,22 @@ template <class Program> std::vector<ResourceInfo> resources(std::shared_ptr<Pro
     return p ? p->resources() : std::vector<ResourceInfo>{};
 }
 
+std::shared_ptr<DomainPoints const> turned_over(DomainPoints const& pattern)
+{
+    auto out = std::make_shared<DomainPoints>(pattern);
+    for (std::size_t i = 0; i + 2 < out->patch.indices.size(); i += 3)
+        std::swap(out->patch.indices[i + 1], out->patch.indices[i + 2]);
+    std::swap(out->corner[1], out->corner[2]);
+    return out;
+}
+
 } // namespace
 
-GeometryStages::GeometryStages(GraphicsPipelineDesc const& desc, DrawCall const& call)
+GeometryStages::GeometryStages(GraphicsPipelineDesc const& desc, DrawCall const& call,
+                               DrawMistakes const& mistakes)
     : d_(desc),
       call_(call),
+      mistakes_(mistakes),
       hs_buffers_(resources(desc.hull_shader)),
       ds_buffers_(resources(desc.domain_shader)),
       gs_buffers_(resources(desc.geometry_shader))
@@ -90,7 +101,11 @@ void GeometryStages::hull_and_tessellate(GeometryChunk& c, AssembledPrimitives c
     c.patterns.resize(c.count);
     TessellatorCache& cache = tessellator_cache();
     for (std::size_t p = 0; p < c.count; ++p) {
+        auto const id = std::int64_t(c.first + p);
+        if (id == mistakes_.other_factor)
+            c.factors[p][0] += c.factors[p][0] > kMaxTessFactor - 2 ? -2.0f : 2.0f;
         c.patterns[p] = cache.find(c.factors[p]);
+        if (id == mistakes_.reversed_winding) c.patterns[p] = turned_over(*c.patterns[p]);
         c.counters.tessellated_points += c.patterns[p]->patch.points();
         c.counters.tessellated_indices += c.patterns[p]->patch.indices.size();
     }

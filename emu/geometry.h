@@ -43,7 +43,8 @@ struct GeometryChunk {
 /// Runs hull shader, tessellator, domain shader and geometry shader over chunks, on any thread.
 class GeometryStages {
 public:
-    GeometryStages(GraphicsPipelineDesc const& desc, DrawCall const& call);
+    GeometryStages(GraphicsPipelineDesc const& desc, DrawCall const& call,
+                   DrawMistakes const& mistakes);
 
     void run(GeometryChunk& chunk, AssembledPrimitives const& primitives,
              float const* shaded_vertices, std::size_t first, std::size_t count) const;
@@ -148,6 +149,7 @@ private:
 
     GraphicsPipelineDesc const& d_;
     DrawCall const& call_;
+    DrawMistakes mistakes_;
     StageBuffers hs_buffers_, ds_buffers_, gs_buffers_;
     mutable std::mutex cache_mutex_;
     mutable std::unordered_map<std::thread::id, std::unique_ptr<TessellatorCache>> caches_;

@@ -77,11 +77,19 @@ private:
     std::unique_ptr<Parts> parts_;
 };
 
+/// Mistakes to plant in a draw, for tests of whatever looks for cracks. Patches by primitive id.
+struct DrawMistakes {
+    static constexpr std::int64_t kNone = -1;
+    std::int64_t other_factor = kNone;     ///< its edge 0 gets a tess factor two larger
+    std::int64_t reversed_winding = kNone; ///< its triangles are turned over
+};
+
 struct DrawOptions {
     VertexCacheModel vertex_cache = {};
     DrawProgress progress = {};
     DrawMemory* memory = nullptr;
     std::span<StreamOutputBuffer> stream_output = {}; ///< at most 4; `filled` moves on
+    DrawMistakes mistakes = {};
 };
 
 /// Draws. Either part may be absent: without `raster` rasterization is off, without `visit` nobody

@@ -222,15 +222,29 @@ struct CoverageCounts {
         : width(w),
           height(h),
           samples(s),
-          count(std::size_t(w) * std::size_t(h) * std::size_t(s))
+          count(std::size_t(w) * std::size_t(h) * std::size_t(s)),
+          winding(count.size())
     {
     }
     int width, height, samples;
-    std::vector<std::uint32_t> count; ///< sample after sample, row after row
-    std::uint32_t& at(int x, int y, int s)
+    std::vector<std::uint32_t> count;  ///< sample after sample, row after row
+    std::vector<std::int32_t> winding; ///< front hits less back hits
+    std::size_t index(int x, int y, int s) const
     {
-        return count[(std::size_t(y) * std::size_t(width) + std::size_t(x)) * std::size_t(samples) +
-                     std::size_t(s)];
+        return (std::size_t(y) * std::size_t(width) + std::size_t(x)) * std::size_t(samples) +
+               std::size_t(s);
+    }
+    std::uint32_t& at(int x, int y, int s) { return count[index(x, y, s)]; }
+    void add(int x, int y, int s, bool front)
+    {
+        std::size_t const i = index(x, y, s);
+        ++count[i];
+        winding[i] += front ? 1 : -1;
+    }
+    void clear()
+    {
+        std::fill(count.begin(), count.end(), 0u);
+        std::fill(winding.begin(), winding.end(), 0);
     }
 };
 
@@ -246,6 +260,8 @@ struct RasterTarget {
     BlendState blend = {};
     bool depth_read_only = false, stencil_read_only = false; ///< of the view (R139)
     CoverageCounts* coverage = nullptr;                      ///< counted where given
+    /// A mistake, for tests of checkers: a sample on an edge belongs to both triangles.
+    bool inclusive_edges = false;
 
     int samples() const;
 };

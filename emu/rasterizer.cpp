@@ -241,7 +241,8 @@ void TileRasterizer::draw_area(Edges const& area, Weights const& weights, Rect p
                 I64x8 in = I64x8{} - 1;
                 for (int i = 0; i < area.count; ++i) {
                     Edge const& e = area.edge[i];
-                    in &= (e(cx, cy) + step[i] >= (e.top_left ? 0 : 1) + I64x8{});
+                    int const least = e.top_left || setup_.target.inclusive_edges ? 0 : 1;
+                    in &= (e(cx, cy) + step[i] >= least + I64x8{});
                 }
                 for (int l = 0; l < 8; ++l) covered[l / 4][l % 4] |= std::uint32_t(in[l] & 1) << s;
             }
@@ -317,7 +318,7 @@ void TileRasterizer::draw_quad(Weights const& weights, int x, int y,
                     if (!(weights.attribute(at, k) >= 0)) mask[l] &= ~(1u << s);
                 if (!(mask[l] >> s & 1)) continue;
             }
-            if (target.coverage) ++target.coverage->at(px, py, int(s));
+            if (target.coverage) target.coverage->add(px, py, int(s), p.front_face);
         }
         mask[l] &= sample_mask_;
         counters_.covered_samples += std::uint64_t(std::popcount(mask[l]));

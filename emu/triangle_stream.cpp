@@ -10,7 +10,7 @@ namespace tessemu {
 bool TriangleStream::supports(RasterSetup const& setup, bool triangles)
 {
     RasterTarget const& t = setup.target;
-    if (!triangles || !setup.pixel_shader || t.samples() != 1 || t.coverage ||
+    if (!triangles || !setup.pixel_shader || t.samples() != 1 || t.coverage || t.inclusive_edges ||
         t.color.size() != 1 || !t.color[0] || !t.depth || t.viewports.size() != 1)
         return false;
     PixelShaderInfo const& ps = setup.pixel_shader->info();

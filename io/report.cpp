@@ -78,12 +78,14 @@ void add_statistics(Json& j, DrawStatistics const& s)
     }
 }
 
-// The hash covers everything but itself, the tool and the run; then whatever `add_result` adds.
+// The hash covers everything but itself, the tool, the run and another program's testimony; then
+// whatever `add_result` adds.
 template <class AddResult>
 std::string finish(Json j, ReportHeader const& header, AddResult const& add_result)
 {
     Json hashed = j;
     hashed.erase("tool");
+    hashed.erase("witness");
     std::string const compact = hashed.dump();
     Sha256 hash;
     hash.add(compact.data(), compact.size());
@@ -292,6 +294,52 @@ std::string paper_table(std::string const& title, std::vector<PaperRow> const& r
         row = r.row;
     }
     for (std::string const& remark : remarks) out += "\n" + remark + "\n";
+    return out;
+}
+
+std::string check_report(ReportHeader const& header, std::vector<VerdictRow> const& verdicts)
+{
+    Json j = start(header);
+    j["verdicts"] = Json::object();
+    auto const hex = [](std::uint32_t bits) { return fmt::format("0x{:08x}", bits); };
+    for (VerdictRow const& v : verdicts) {
+        j["verdicts"][v.name] = Json{{"verdict", v.verdict}};
+        Json& out = v.witness ? j["witness"][v.name] : j["verdicts"][v.name];
+        if (!v.reason.empty()) out["reason"] = v.reason;
+        out["checked"] = v.checked;
+        out["failures"] = v.failures;
+        out["sites"] = Json::array();
+        for (VerdictSite const& s : v.sites) {
+            Json site;
+            if (s.pixel[0] >= 0) site["pixel"] = {s.pixel[0], s.pixel[1]};
+            if (s.component >= 0 || s.vertex[0] != s.vertex[1]) {
+                site["faces"] = {s.face[0] + 1, s.face[1] + 1};
+                site["vertices"] = {s.vertex[0] + 1, s.vertex[1] + 1};
+                site["t"] = s.t / 65536.0;
+            }
+            if (s.component >= 0) {
+                site["component"] = std::string(1, "xyz"[s.component]);
+                site["bits"] = {hex(s.bits[0]), hex(s.bits[1])};
+                site["ulp"] = s.ulp;
+            }
+            site["text"] = s.text;
+            out["sites"].push_back(std::move(site));
+        }
+    }
+    return finish(std::move(j), header, [](Sha256&) {});
+}
+
+std::string check_table(std::vector<VerdictRow> const& verdicts, std::size_t most)
+{
+    std::string out =
+        fmt::format("{:<10} {:<8} {:>12} {:>10}\n", "", "verdict", "checked", "failures");
+    for (VerdictRow const& v : verdicts) {
+        out += fmt::format("{:<10} {:<8} {:>12} {:>10}  {}\n", v.name, v.verdict,
+                           counted(v.checked), counted(v.failures), v.reason);
+        for (std::size_t i = 0; i < std::min(most, v.sites.size()); ++i)
+            out += "    " + v.sites[i].text + "\n";
+        if (v.failures > most) out += fmt::format("    and {} more\n", counted(v.failures - most));
+    }
     return out;
 }
 

@@ -83,6 +83,26 @@ std::string paper_report(ReportHeader const& header, std::string const& title,
 std::string paper_table(std::string const& title, std::vector<PaperRow> const& rows,
                         std::vector<std::string> const& remarks);
 
+/// A verdict of check, and what it fails on.
+struct VerdictSite {
+    std::uint32_t face[2], vertex[2], t; ///< faces and vertices from 0
+    int component;                       ///< -1: no value differs
+    std::uint32_t bits[2];
+    std::uint64_t ulp;
+    int pixel[2]; ///< -1: no pixel
+    std::string text;
+};
+struct VerdictRow {
+    std::string name, verdict, reason;
+    std::uint64_t checked, failures;
+    std::vector<VerdictSite> sites;
+    bool witness = false; ///< its numbers are another program's: under "witness", not hashed
+};
+/// check: each verdict with what it checked and where it fails
+std::string check_report(ReportHeader const& header, std::vector<VerdictRow> const& verdicts);
+/// \param most  sites of a verdict that are shown
+std::string check_table(std::vector<VerdictRow> const& verdicts, std::size_t most);
+
 /// A stage's predicted time.
 struct CostRow {
     std::string stage, bound;

@@ -84,11 +84,11 @@ HeightMap Displacement::height_map() const
 }
 
 PatchEpilog make_patch_epilog(ControlMesh const& mesh, std::span<PatchOrigin const> patches,
-                              Matrix4 const& view_projection,
+                              VertexFinish const& finish,
                               std::shared_ptr<Displacement const> const& displacement,
                               Machine const& machine)
 {
-    if (!displacement) return {make_domain_epilog(ProjectionEpilog{view_projection}, machine), {}};
+    if (!displacement) return {make_domain_epilog(ProjectionEpilog{finish}, machine), {}};
     struct Memory {
         std::shared_ptr<Displacement const> displacement;
         std::vector<std::uint32_t> words;
@@ -97,7 +97,7 @@ PatchEpilog make_patch_epilog(ControlMesh const& mesh, std::span<PatchOrigin con
     DisplacementEpilog epilog;
     epilog.height = displacement->height_map();
     epilog.scale = displacement->scale();
-    epilog.view_projection = view_projection;
+    epilog.finish = finish;
     if (!displacement->corners().empty() && !patches.empty()) {
         memory->words = patch_words(mesh, patches);
         epilog.coordinates.sides = patches[0].sides;

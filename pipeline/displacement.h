@@ -46,7 +46,7 @@ struct PatchEpilog {
 
 /// Projection, or displacement and projection. `patches` of one shape, by primitive id.
 PatchEpilog make_patch_epilog(ControlMesh const& mesh, std::span<PatchOrigin const> patches,
-                              Matrix4 const& view_projection,
+                              VertexFinish const& finish,
                               std::shared_ptr<Displacement const> const& displacement,
                               Machine const& machine);
 

@@ -113,6 +113,8 @@ PassSettings pass_settings(FrameSettings const& s)
     p.true_normals = s.true_normals;
     p.displacement = s.displacement;
     p.pose = s.pose;
+    p.mistake = s.mistake;
+    p.parity = s.parity;
     return p;
 }
 
@@ -120,6 +122,18 @@ std::vector<DrawPass> frame_passes(PatchMesh const& mesh, FrameSettings const& s
                                    PassSettings const& settings)
 {
     std::vector<DrawPass> passes = mesh.passes(settings);
+    Mistake const m = s.mistake.kind;
+    if (m == Mistake::Factors || m == Mistake::Fold) {
+        if (s.direct3d10)
+            throw Error("the mistake '" + std::string(name_of(m)) +
+                        "' is the tessellator's, which the Direct3D 10 path does not have");
+        for (DrawPass& pass : passes)
+            for (std::size_t i = 0; i < pass.patches.size(); ++i) {
+                if (pass.patches[i].face != s.mistake.face) continue;
+                (m == Mistake::Fold ? pass.mistakes.reversed_winding : pass.mistakes.other_factor) =
+                    std::int64_t(i);
+            }
+    }
     if (s.direct3d10)
         for (DrawPass& pass : passes) pass = instanced(std::move(pass), settings);
     return passes;
@@ -187,8 +201,9 @@ void draw_frame(PatchMesh const& mesh, FrameSettings const& s, ThreadPool const&
     RasterTarget raster{{&color}, &frame.depth, {{0, 0, float(s.width), float(s.height), 0, 1}}};
     raster.rasterizer.cull = s.cull;
     raster.rasterizer.front_counter_clockwise = true; // as the papers' meshes
+    raster.inclusive_edges = s.mistake.kind == Mistake::TopLeft;
     if (frame.coverage) {
-        std::fill(frame.coverage->count.begin(), frame.coverage->count.end(), 0u);
+        frame.coverage->clear();
         raster.coverage = frame.coverage.get();
     }
     draw_passes(mesh, s, raster, settings, threads, frame, progress);

@@ -51,6 +51,8 @@ struct FrameSettings {
     bool true_normals = false;
     std::shared_ptr<Displacement const> displacement; ///< none: the smooth surface
     std::shared_ptr<Pose const> pose;                 ///< none: the mesh at rest
+    PlantedMistake mistake;
+    float parity = 0;        ///< object space; see VertexFinish
     bool direct3d10 = false; ///< by geometry shader and instances, see instanced_tessellation.h
     Machine machine;
     VertexCacheModel vertex_cache;

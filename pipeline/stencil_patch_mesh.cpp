@@ -5,6 +5,8 @@
 #include "shaders_cpp/skinning.h"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <numeric>
 #include <unordered_map>
 
@@ -48,10 +50,13 @@ public:
         for (Group const& g : groups_) {
             StencilKind const& kind = scheme_.kinds[g.kind];
             if (!domain[g.kind]) domain[g.kind] = kind.domain_program(settings);
-            out.push_back(
-                make_patch_pass(kind.kind, mesh_, g.inputs, g.indices, g.patches, vertex,
-                                kind.hull_program({weights_, masks_, g.words, g.order}, settings),
-                                domain[g.kind], settings));
+            std::shared_ptr<FlippedWeight const> const mistake = flipped_weight(g, settings);
+            StencilBuffers buffers{weights_, masks_, g.words, g.order};
+            if (mistake) buffers.weights = mistake->weights, buffers.patches = mistake->words;
+            out.push_back(make_patch_pass(kind.kind, mesh_, g.inputs, g.indices, g.patches, vertex,
+                                          kind.hull_program(buffers, settings), domain[g.kind],
+                                          settings));
+            out.back().memory.push_back(mistake);
         }
         return out;
     }
@@ -77,6 +82,55 @@ public:
     std::vector<std::string> const& warnings() const override { return warnings_; }
 
 private:
+    /// The mistake of one patch: weights of its own, of which one differs in the last bit.
+    struct FlippedWeight {
+        std::vector<float> weights;
+        std::vector<std::uint32_t> words;
+    };
+    std::shared_ptr<FlippedWeight const> flipped_weight(Group const& g,
+                                                        PassSettings const& settings) const
+    {
+        if (settings.mistake.kind != Mistake::Weights) return {};
+        for (std::size_t i = 0; i < g.patches.size(); ++i) {
+            if (g.patches[i].face != settings.mistake.face) continue;
+            auto out = std::make_shared<FlippedWeight>(FlippedWeight{weights_, g.words});
+            std::size_t const words = g.words.size() / g.patches.size();
+            std::uint32_t& first = out->words[i * words];
+            auto const rows = std::size_t(g.words[i * words + 2]), inputs = std::size_t(g.inputs);
+            // The type's weights and, behind them, its constants.
+            auto const next = std::upper_bound(
+                types_.begin(), types_.end(), first,
+                [](std::uint32_t at, Type const& t) { return at < t.first_weight; });
+            std::size_t const end = next == types_.end() ? weights_.size() : next->first_weight;
+            auto const begin = std::size_t(first);
+            first = std::uint32_t(weights_.size());
+            out->weights.insert(out->weights.end(), weights_.begin() + std::ptrdiff_t(begin),
+                                weights_.begin() + std::ptrdiff_t(end));
+            // A last bit may drown in the sum's rounding: of the weights of the corners' limit
+            // points, the first that changes its point.
+            float* const own = out->weights.data() + first;
+            auto const* const ids = g.indices.data() + i * inputs;
+            auto const* const order = g.order.data() + i * inputs;
+            auto const sum = [&](std::size_t row) {
+                glm::vec3 s(0);
+                for (std::size_t k = 0; k < inputs; ++k)
+                    s += own[order[k] * rows + row] * mesh_.positions[ids[order[k]]];
+                return s;
+            };
+            auto const sides = std::size_t(scheme_.kinds[g.kind].sides);
+            for (std::size_t at = 0; at < inputs * sides; ++at) {
+                float& weight = own[at / sides * rows + at % sides];
+                float const right = weight;
+                glm::vec3 const before = sum(at % sides);
+                weight = std::bit_cast<float>(std::bit_cast<std::uint32_t>(right) ^ 1u);
+                if (right != 0 && sum(at % sides) != before) break;
+                weight = right;
+            }
+            return out;
+        }
+        return {};
+    }
+
     static std::unique_ptr<VertexProgram> vertex_program(PassSettings const& settings)
     {
         if (!settings.pose) return make_vertex_program(PassThroughVertexShader{}, settings.machine);

@@ -64,8 +64,9 @@ DrawPass make_patch_pass(PatchKind const& kind, ControlMesh const& mesh, int con
     GraphicsPipelineDesc desc;
     desc.vertex_shader = std::move(vertex);
     desc.hull_shader = std::move(hull);
-    PatchEpilog epilog = make_patch_epilog(mesh, patches, settings.view_projection,
-                                           settings.displacement, settings.machine);
+    PatchEpilog epilog = make_patch_epilog(
+        mesh, patches, {settings.view_projection, settings.parity, settings.lattice},
+        settings.displacement, settings.machine);
     desc.domain_shader = with_epilog(std::move(domain), std::move(epilog.program));
     if (settings.pixel_shader) desc.pixel_shader = settings.pixel_shader(kind);
     desc.partitioning = settings.partitioning;
@@ -75,7 +76,7 @@ DrawPass make_patch_pass(PatchKind const& kind, ControlMesh const& mesh, int con
     call.control_points = control_points;
     call.set_vertices({&mesh.positions.data()->x, mesh.positions.size() * 3}, 3);
     call.indices = indices;
-    DrawPass pass{kind, GraphicsPipeline(std::move(desc)), call, patches, {}, {}, {}};
+    DrawPass pass{kind, GraphicsPipeline(std::move(desc)), call, patches, {}, {}, {}, {}};
     pass.memory = {std::move(epilog.memory), settings.pose};
     return pass;
 }
@@ -125,8 +126,10 @@ DrawStatistics draw_pass(DrawPass const& pass, RasterTarget const* raster,
         s += visit_instances(pass, visit, threads, options);
         if (!raster) return s;
     }
+    DrawOptions with_mistakes = options;
+    with_mistakes.mistakes = pass.mistakes;
     s += draw(pass.pipeline, pass.call, raster, pass.pattern ? PatchVisitor{} : visit, threads,
-              options);
+              with_mistakes);
     return s;
 }
 

@@ -10,10 +10,12 @@
 
 #include "emu/graphics_pipeline.h"
 #include "pipeline/animation.h"
+#include "pipeline/mistake.h"
 #include "pipeline/patch_origin.h"
 #include "pipeline/topology.h"
 #include "shaders_cpp/projection.h"
 #include "shaders_cpp/tess_factor_rule.h"
+#include "shaders_cpp/watertight_patch.h"
 
 #include <map>
 
@@ -51,6 +53,9 @@ struct PassSettings {
     Matrix4 view_projection = kIdentity;
     std::shared_ptr<Displacement const> displacement; ///< none: the smooth surface
     std::shared_ptr<Pose const> pose;                 ///< none: the mesh at rest
+    PlantedMistake mistake;
+    float parity = 0;                   ///< see VertexFinish
+    std::array<float, 2> lattice{0, 0}; ///< see VertexFinish
     /// Called once per pass; absent: rasterization is off.
     std::function<std::shared_ptr<PixelProgram const>(PatchKind const&)> pixel_shader;
 
@@ -74,6 +79,7 @@ struct DrawPass {
     std::vector<std::shared_ptr<void const>> memory; ///< what else the pass's buffers view
     /// Of a pass that draws an instance of this pattern for each patch, without a tessellator.
     std::shared_ptr<DomainPoints const> pattern;
+    DrawMistakes mistakes;
 };
 
 /// Prepares and draws a pass; see draw().
@@ -115,7 +121,11 @@ public:
 template <class Surface>
 std::shared_ptr<DomainProgram const> surface_program(PassSettings const& settings)
 {
-    return make_domain_program(Surface{settings.true_normals}, settings.machine);
+    Mistake const m = settings.mistake.kind;
+    return make_domain_program(
+        Surface{settings.true_normals,
+                {m == Mistake::Order, m == Mistake::Contraction, m == Mistake::Normals}},
+        settings.machine);
 }
 
 /// The pass of a patch mesh whose vertex buffer is the control mesh's positions.

@@ -37,6 +37,13 @@ def figures():
             shutil.copy(folder + "/sway_%04d.png" % i, OUT / ("sway%d.png" % i))
 
 
+def cracks():
+    """Exit status 1 is what these runs are for."""
+    for name, options in (("cracks_ulp.png", []), ("cracks_parity.png", ["--parity", "0.01"])):
+        subprocess.run([TESSEMU, "check", "golem", "--tess", "7.3", "--break", "order", "--rays", "0", "--size", "480x480",
+                        "--camera", "from=.4,.3,1", *options, "-o", str(OUT / name)], capture_output=True)
+
+
 def patterns():
     rows = [
         ("quad, integer 5", "quad", "integer", [5] * 6),
@@ -97,5 +104,6 @@ if __name__ == "__main__":
     OUT.mkdir(parents=True, exist_ok=True)
     pictures()
     figures()
+    cracks()
     patterns()
     stages()

@@ -138,7 +138,7 @@ struct DisplacementEpilog {
     HeightMap height;
     float scale = 0; ///< displacement where the height is 1, object space
     OwnedCoordinates coordinates;
-    Matrix4 view_projection = kIdentity;
+    VertexFinish finish;
 
     std::vector<ResourceInfo> resources() const
     {
@@ -154,7 +154,7 @@ struct DisplacementEpilog {
         if (height.image.bound()) c = coordinates.template operator()<T>(in);
         T const h = T(scale) * height.template operator()<T>(s.position, c.owner);
         float3<T> const displaced = s.position + h * s.normal;
-        return {transform(view_projection, displaced), s.normal, s.position, c.own};
+        return {finish(displaced, s.normal), s.normal, s.position, c.own};
     }
 };
 

@@ -78,6 +78,14 @@ constexpr SurfacePoint<T> edge_point(EdgeCurve<T> const& edge, float3<T> const (
     return r;
 }
 
+/// Mistakes at patch edges, planted for checkers to find; each breaks a step of the recipe.
+struct EdgeMistakes {
+    bool own_direction = false; ///< each patch walks its edge from its own corner k to k+1
+    bool mirror_pairs = false;  ///< and sums (b0 p0 + b3 p3) + (b1 p1 + b2 p2), which a contracted
+                                ///< multiply-add makes unsymmetric
+    bool own_normals = false;   ///< the patch's own cross product on edges and at corners
+};
+
 /// Domain shader of a patch.
 ///
 ///     struct Inside {
@@ -109,6 +117,7 @@ template <class Inside> struct WatertightPatch {
     template <class T> using Registers = ControlPoints<EdgeRegister<T>>;
 
     bool true_normals = false; ///< of interior points, where the scheme tells them from its own
+    EdgeMistakes mistakes = {};
 
     template <class T>
     constexpr SurfacePoint<T> operator()(DomainInput<T> const& in, Patch<T> const& patch,
@@ -148,15 +157,18 @@ private:
         auto boundary = on[0] | on[1] | on[2];
         if constexpr (kSides == 4) boundary = boundary | on[3];
         float3<T> const zero(T(0), T(0), T(0));
+        auto const evaluated = mistakes.own_normals ? (boundary | !boundary) : !boundary;
         SurfacePoint<T> const inside = when(
-            !boundary,
+            evaluated,
             [&] {
                 TangentFrame<T> const frame = evaluate<T>(in, patch, registers);
                 return SurfacePoint<T>{frame.position, cross(frame.du, frame.dv)};
             },
             SurfacePoint<T>{zero, zero});
-        return when(
+        SurfacePoint<T> s = when(
             boundary, [&] { return boundary_point<T>(patch, registers, on, t); }, inside);
+        if (mistakes.own_normals) s.normal = inside.normal;
+        return s;
     }
 
     /// Edges through edge_point, corners from vertex data.
@@ -164,9 +176,9 @@ private:
     /// \param on  on[k]: the point lies on edge k
     /// \param t   t[k]: its parameter from corner k to corner k+1
     template <class T>
-    static constexpr SurfacePoint<T>
-    boundary_point(Patch<T> const& patch, Registers<T> const& registers,
-                   mask_of<T> const (&on)[kSides], T const (&t)[kSides])
+    constexpr SurfacePoint<T> boundary_point(Patch<T> const& patch, Registers<T> const& registers,
+                                             mask_of<T> const (&on)[kSides],
+                                             T const (&t)[kSides]) const
     {
         constexpr int N = kSides;
         float3<T> const zero(T(0), T(0), T(0));
@@ -187,7 +199,11 @@ private:
                         select(back, e.p3, e.p0),       select(back, e.p2, e.p1),
                         select(back, e.p1, e.p2),       select(back, e.p0, e.p3),
                         select(back, -e.last, e.first), select(back, -e.first, e.last)};
-                    return edge_point<T>(canonical, W, select(back, T(1) - t[k], t[k]));
+                    SurfacePoint<T> point =
+                        edge_point<T>(canonical, W, select(back, T(1) - t[k], t[k]));
+                    if (mistakes.own_direction) point = own_edge_point<T>(e, W, back, t[k]);
+                    if (mistakes.mirror_pairs) point.position = mirror_pairs<T>(e, t[k]);
+                    return point;
                 },
                 s);
             s = when(
@@ -199,6 +215,24 @@ private:
                 s);
         }
         return s;
+    }
+
+    /// A mistake: the edge in the patch's own direction. Along it W is -W, backwards.
+    template <class T>
+    static constexpr SurfacePoint<T> own_edge_point(EdgeCurve<T> const& e, float3<T> const (&W)[4],
+                                                    mask_of<T> const& back, T t)
+    {
+        float3<T> own[4];
+        for (int i = 0; i < 4; ++i) own[i] = select(back, float3<T>(-W[3 - i]), W[i]);
+        return edge_point<T>(e, own, t);
+    }
+
+    /// A mistake where products may be fused: the sum looks symmetric and is not.
+    template <class T> static constexpr float3<T> mirror_pairs(EdgeCurve<T> const& e, T t)
+    {
+        T const s = T(1) - t, ss = s * s, tt = t * t, m = T(3) * T(s * t);
+        T const b0 = ss * s, b1 = m * s, b2 = m * t, b3 = tt * t;
+        return (b0 * e.p0 + b3 * e.p3) + (b1 * e.p1 + b2 * e.p2);
     }
 };
 

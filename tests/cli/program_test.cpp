@@ -55,8 +55,8 @@ TEST(Program, HelpAndVersionExitZeroOnEachVerb)
 {
     EXPECT_EQ(run("--help").status, 0);
     EXPECT_EQ(run("--version").status, 0);
-    for (char const* verb : {"draw", "export", "tessellate", "compare", "cost", "reproduce", "diff",
-                             "info", "schemes", "models"}) {
+    for (char const* verb : {"draw", "export", "tessellate", "compare", "check", "cost",
+                             "reproduce", "diff", "info", "schemes", "models"}) {
         Result const help = run(std::string(verb) + " --help");
         EXPECT_EQ(help.status, 0) << verb;
         EXPECT_NE(help.out.find("Examples:"), std::string::npos) << verb;
@@ -68,8 +68,8 @@ TEST(Program, HelpAndVersionExitZeroOnEachVerb)
 
 TEST(Program, AVerbWithoutItsArgumentPrintsHelpAndExitsTwo)
 {
-    for (char const* verb :
-         {"", "draw", "export", "tessellate", "compare", "cost", "reproduce", "diff", "info"}) {
+    for (char const* verb : {"", "draw", "export", "tessellate", "compare", "check", "cost",
+                             "reproduce", "diff", "info"}) {
         Result const r = run(verb);
         EXPECT_EQ(r.status, 2) << verb;
         EXPECT_TRUE(r.out.empty()) << verb;
@@ -111,6 +111,9 @@ TEST(Program, BadUsageExitsTwoWithOneLineThatNamesTheValue)
              {"reproduce loop09-table1 -o a.png", "figures"},
              {"reproduce loop09-figure3 --json -", "picture"},
              {"cost jug --machine nowhere", "gtx260"},
+             {"check golem --break glass", "topleft"},
+             {"check golem --break fold --break-face 71", "70 faces"},
+             {"check golem --break fold --direct3d 10", "tessellator"},
              {"draw jug --view error --error-max 1", "POSITION,ANGLE"},
              {"draw jug --view error --error-max 0,1", "above 0"},
              {"draw spindle --view error", "needs quads"},
@@ -193,6 +196,36 @@ TEST(Program, ASequenceHasAPictureAndCountersForEachFrame)
         }
         EXPECT_EQ(Json::parse(run(options + " -j 1 --lanes 4 --json -").out)["hash"], j["hash"]);
     }
+}
+
+TEST(Program, CheckExitsOneWhereAVerdictFails)
+{
+    Result const good = run("check golem --size 128x128 --rays 2000 --json -");
+    ASSERT_EQ(good.status, 0) << good.err;
+    Json const a = Json::parse(good.out);
+    for (char const* name : {"topology", "position", "normal", "coverage", "raycast"})
+        EXPECT_EQ(a["verdicts"][name]["verdict"], "pass") << name;
+    EXPECT_EQ(a["verdicts"]["displaced"]["verdict"], "skipped");
+    EXPECT_FALSE(a["verdicts"]["displaced"]["reason"].get<std::string>().empty());
+    EXPECT_EQ(a["witness"]["raycast"]["checked"], 4000);
+    EXPECT_EQ(
+        Json::parse(
+            run("check golem --size 128x128 --rays 2000 -j 1 --lanes 4 --json -").out)["hash"],
+        a["hash"]);
+
+    fs::path const picture = scratch() / "cracks.png";
+    Result const bad = run("check golem --size 128x128 --rays 0 --break order -o " +
+                           picture.string() + " --json -");
+    EXPECT_EQ(bad.status, 1) << bad.err;
+    EXPECT_GT(fs::file_size(picture), 500u);
+    Json const b = Json::parse(bad.out);
+    EXPECT_EQ(b["verdicts"]["position"]["verdict"], "fail");
+    EXPECT_EQ(b["verdicts"]["position"]["sites"].size(), b["verdicts"]["position"]["failures"]);
+    Json const& site = b["verdicts"]["position"]["sites"][0];
+    EXPECT_EQ(site["bits"][0].get<std::string>().substr(0, 2), "0x");
+    EXPECT_GE(site["ulp"].get<int>(), 1);
+    EXPECT_EQ(site["faces"].size(), 2u);
+    EXPECT_EQ(b["verdicts"]["raycast"]["verdict"], "skipped");
 }
 
 TEST(Program, CostGivesSecondsByStageAndARoofline)
@@ -358,7 +391,7 @@ TEST(Program, CommandsOfReadmeAndDocsWork)
     std::size_t commands = 0;
     for (char const* page : {"README.md", "docs/architecture.md", "docs/numbers.md",
                              "docs/stages.md", "docs/gregory.md", "docs/displacement.md",
-                             "docs/animation.md", "docs/cost.md"}) {
+                             "docs/animation.md", "docs/cost.md", "docs/watertight.md"}) {
         std::istringstream in(test::read_text(test::source(page)));
         std::string line;
         while (std::getline(in, line)) {

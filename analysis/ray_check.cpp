@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/ray_check.h"
+
+#include "emu/error.h"
+
+#include <embree3/rtcore.h>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <cfloat>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <tuple>
+
+namespace tessemu {
+
+namespace {
+
+// Differences of floats, products of three of them and a few sums need at most 113 bits unless
+// exponents lie far apart.
+#if LDBL_MANT_DIG >= 113
+using Exact = long double;
+#else
+__extension__ typedef __float128 Exact;
+#endif
+
+struct Ray {
+    glm::vec3 origin, direction, target;
+    std::uint32_t aimed_at;
+};
+
+// A generator of its own for each ray, so that rays do not depend on the threads.
+class Random {
+public:
+    explicit Random(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15u + 0x632be59bd9b4e019u)
+    {
+    }
+    std::uint64_t bits()
+    {
+        state_ += 0x9e3779b97f4a7c15u;
+        std::uint64_t z = (state_ ^ (state_ >> 30)) * 0xbf58476d1ce4e5b9u;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+        return z ^ (z >> 31);
+    }
+    float unit() { return float(bits() >> 40) * 0x1p-24f; }
+    std::size_t below(std::size_t n) { return std::size_t(bits() % n); }
+
+private:
+    std::uint64_t state_;
+};
+
+class Scene {
+public:
+    Scene(std::vector<glm::vec3> const& positions, std::vector<std::uint32_t> const& triangles)
+        : device_(rtcNewDevice(nullptr)),
+          scene_(rtcNewScene(device_.get()))
+    {
+        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
+        RTCGeometry const g = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+        auto* const v = static_cast<float*>(rtcSetNewGeometryBuffer(
+            g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
+        for (std::size_t i = 0; i < positions.size(); ++i)
+            for (int k = 0; k < 3; ++k) v[3 * i + std::size_t(k)] = positions[i][k];
+        auto* const n = static_cast<std::uint32_t*>(
+            rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                    3 * sizeof(std::uint32_t), triangles.size() / 3));
+        std::copy(triangles.begin(), triangles.end(), n);
+        rtcCommitGeometry(g);
+        rtcAttachGeometry(scene_.get(), g);
+        rtcReleaseGeometry(g);
+        rtcCommitScene(scene_.get());
+    }
+
+    /// True if the ray meets a front first.
+    bool meets_front(Ray const& r) const
+    {
+        RTCRayHit hit{};
+        hit.ray.org_x = r.origin.x, hit.ray.org_y = r.origin.y, hit.ray.org_z = r.origin.z;
+        hit.ray.dir_x = r.direction.x, hit.ray.dir_y = r.direction.y, hit.ray.dir_z = r.direction.z;
+        hit.ray.tfar = INFINITY;
+        hit.ray.mask = 0xffffffffu;
+        hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcIntersect1(scene_.get(), &context, &hit);
+        if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+        return dot(glm::vec3(hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z), r.direction) < 0;
+    }
+
+private:
+    struct Release {
+        void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
+        void operator()(RTCScene s) const { rtcReleaseScene(s); }
+    };
+    std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
+    std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
+};
+
+struct Exact3 {
+    Exact x, y, z;
+};
+Exact3 difference(glm::vec3 a, glm::vec3 b)
+{
+    return {Exact(a.x) - Exact(b.x), Exact(a.y) - Exact(b.y), Exact(a.z) - Exact(b.z)};
+}
+Exact3 cross3(Exact3 const& a, Exact3 const& b)
+{
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Exact dot3(Exact3 const& a, Exact3 const& b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+struct Crossings {
+    int first = 0;   // 1 front, -1 back, 0 none
+    int balance = 0; // fronts less backs
+};
+
+// A ray that runs exactly through an edge passes on one side of it: the same side for both
+// triangles, which have the edge in opposite directions.
+bool is_negative(Exact x, glm::vec3 a, glm::vec3 b)
+{
+    if (x != 0) return x < 0;
+    return std::tuple(a.x, a.y, a.z) < std::tuple(b.x, b.y, b.z);
+}
+
+Crossings cross_exactly(RayMesh const& mesh, Ray const& r)
+{
+    glm::dvec3 const o(r.origin), d(glm::normalize(glm::dvec3(r.direction)));
+    Exact3 const direction{Exact(r.direction.x), Exact(r.direction.y), Exact(r.direction.z)};
+    Crossings out;
+    Exact best_numerator = 0, best_denominator = 1;
+    for (std::size_t i = 0; i + 2 < mesh.triangles.size(); i += 3) {
+        glm::vec3 const a = mesh.positions[mesh.triangles[i]],
+                        b = mesh.positions[mesh.triangles[i + 1]],
+                        c = mesh.positions[mesh.triangles[i + 2]];
+        // Far from the ray: a sphere around the triangle, with room for rounding.
+        glm::dvec3 const middle = (glm::dvec3(a) + glm::dvec3(b) + glm::dvec3(c)) / 3.0,
+                         to = middle - o;
+        double const along = dot(to, d);
+        double const squared = dot(to, to) - along * along;
+        double const radius =
+            std::max({glm::length(glm::dvec3(a) - middle), glm::length(glm::dvec3(b) - middle),
+                      glm::length(glm::dvec3(c) - middle)});
+        if (squared > radius * radius * 1.01 + 1e-12 * dot(to, to)) continue;
+        Exact3 const A = difference(a, r.origin), B = difference(b, r.origin),
+                     C = difference(c, r.origin);
+        Exact const u = dot3(direction, cross3(B, C)), v = dot3(direction, cross3(C, A)),
+                    w = dot3(direction, cross3(A, B));
+        bool const nu = is_negative(u, b, c), nv = is_negative(v, c, a), nw = is_negative(w, a, b);
+        bool const front = nu && nv && nw, back = !nu && !nv && !nw;
+        Exact const volume = u + v + w; // 0: seen edge on
+        if ((!front && !back) || volume == 0) continue;
+        // Distance along the ray: A . ((B-A) x (C-A)) / volume.
+        Exact const numerator = dot3(A, cross3(difference(b, a), difference(c, a)));
+        bool const ahead = (numerator > 0) == (volume > 0);
+        if (!ahead) continue;
+        Exact const n = volume > 0 ? numerator : -numerator, m = volume > 0 ? volume : -volume;
+        out.balance += front ? 1 : -1;
+        if (out.first == 0 || n * best_denominator < best_numerator * m) {
+            out.first = front ? 1 : -1;
+            best_numerator = n;
+            best_denominator = m;
+        }
+    }
+    return out;
+}
+
+} // namespace
+
+RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::uint32_t seed,
+                    ThreadPool const& threads)
+{
+    std::size_t const triangles = mesh.triangles.size() / 3;
+    if (triangles == 0) throw Error("a mesh without triangles meets no rays");
+    RayCheck out;
+    if (aim == RayAim::Segments && mesh.targets.empty()) return out;
+    glm::vec3 low = mesh.positions[0], high = low;
+    for (glm::vec3 const& p : mesh.positions) low = min(low, p), high = max(high, p);
+    float const reach = 2 * glm::length(high - low);
+
+    // Around a target the normal of some triangle says where outside is.
+    std::vector<std::uint32_t> triangle_of(mesh.positions.size(), 0);
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+        triangle_of[mesh.triangles[i]] = std::uint32_t(i / 3);
+    auto const corner = [&](std::size_t triangle, std::size_t k) {
+        return mesh.positions[mesh.triangles[3 * triangle + k]];
+    };
+    auto const ray = [&](std::uint64_t i) {
+        Random random((std::uint64_t(seed) << 40) + i);
+        Ray r{};
+        std::size_t triangle = random.below(triangles);
+        if (aim == RayAim::Segments) {
+            r.aimed_at = std::uint32_t(random.below(mesh.targets.size() / 2));
+            std::uint32_t const a = mesh.targets[2 * r.aimed_at],
+                                b = mesh.targets[2 * r.aimed_at + 1];
+            float const t = 0.1f + 0.8f * random.unit(); // off the vertices
+            r.target = (1 - t) * mesh.positions[a] + t * mesh.positions[b];
+            triangle = triangle_of[a];
+        } else {
+            r.aimed_at = std::uint32_t(triangle);
+            float const s = random.unit(), t = random.unit() * (1 - s);
+            r.target = aim == RayAim::Vertices
+                           ? corner(triangle, random.below(3))
+                           : corner(triangle, 0) +
+                                 (0.05f + 0.85f * s) * (corner(triangle, 1) - corner(triangle, 0)) +
+                                 (0.05f + 0.85f * t) * (corner(triangle, 2) - corner(triangle, 0));
+        }
+        glm::vec3 const n = cross(corner(triangle, 1) - corner(triangle, 0),
+                                  corner(triangle, 2) - corner(triangle, 0));
+        float const length = glm::length(n);
+        glm::vec3 out_of(0);
+        for (int tries = 0; tries < 64; ++tries) {
+            glm::vec3 const x(2 * random.unit() - 1, 2 * random.unit() - 1, 2 * random.unit() - 1);
+            float const l = glm::length(x);
+            if (l > 1 || l < 0.1f) continue;
+            out_of = x / l;
+            if (length == 0 || dot(out_of, n) >= 0.3f * length) break;
+        }
+        r.origin = r.target + reach * out_of;
+        r.direction = r.target - r.origin;
+        return r;
+    };
+
+    Scene const scene(mesh.positions, mesh.triangles);
+    std::optional<Scene> control;
+    if (!mesh.control.empty()) control.emplace(mesh.control, mesh.triangles);
+    constexpr std::uint64_t kPiece = 4096;
+    struct Piece {
+        std::vector<std::uint64_t> misses;
+        std::uint64_t control_misses = 0;
+    };
+    std::vector<Piece> pieces((rays + kPiece - 1) / kPiece);
+    threads.parallel_for(pieces.size(), [&](std::size_t p) {
+        for (std::uint64_t i = p * kPiece; i < std::min(rays, (p + 1) * kPiece); ++i) {
+            Ray const r = ray(i);
+            if (!scene.meets_front(r)) pieces[p].misses.push_back(i);
+            if (control) pieces[p].control_misses += !control->meets_front(r);
+        }
+    });
+    out.rays = rays;
+    std::vector<std::uint64_t> misses;
+    for (Piece const& p : pieces) {
+        misses.insert(misses.end(), p.misses.begin(), p.misses.end());
+        out.control_misses += p.control_misses;
+    }
+    out.misses = misses.size();
+    std::vector<Crossings> exact(misses.size());
+    threads.parallel_for(misses.size(),
+                         [&](std::size_t k) { exact[k] = cross_exactly(mesh, ray(misses[k])); });
+    for (std::size_t k = 0; k < misses.size(); ++k) {
+        if (exact[k].balance == 0) {
+            int const first = exact[k].first;
+            ++(first > 0 ? out.refuted : first < 0 ? out.folds : out.past);
+            continue;
+        }
+        Ray const r = ray(misses[k]);
+        out.confirmed.push_back({r.origin, r.target, r.aimed_at});
+    }
+    return out;
+}
+
+} // namespace tessemu
