@@ -71,7 +71,7 @@ for compiler in g++ clang++; do
             for run in "1 4" "3 8" "8 16"; do
                 read -r threads lanes <<<"$run"
                 what="$compiler -$level -j $threads --lanes $lanes"
-                for variant in "--contraction none" "--contraction mixed:5" "--displace studs --animate sway --phase 0.3" \
+                for variant in "--contraction none" "--contraction mixed:5" "--displace studs --animate sway --phase 0.3 --contraction mixed:5" \
                     "--displace docs/images/roofline.png --contraction all" "--tess-edge pixels=6" "--direct3d 10" \
                     "--view error --level 3"; do
                     check "draw golem $scheme $variant" "$("$folder/tessemu" draw golem --scheme $scheme --size 200x150 \

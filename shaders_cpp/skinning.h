@@ -38,7 +38,7 @@ struct SkinBuffers {
                                m(4 * r + 3);
                     };
                     T const w = T(1.0 / 255) * T(weight);
-                    float3<T> const moved(along(0), along(1), along(2));
+                    float3<T> const moved{along(0), along(1), along(2)}; // in this order
                     return float3<T>(sum + w * moved);
                 },
                 sum);

@@ -103,12 +103,19 @@ constexpr TangentFrame<T> acc_quad(ControlPoints<AccControlPoint<T>> const& patc
     auto const quadratic = [](T const(&B)[3], V const& a0, V const& a1, V const& a2) -> V {
         return B[0] * a0 + B[1] * a1 + B[2] * a2;
     };
-    auto const row = [&](int i) -> V { return cubic(Bv, b[i][0], b[i][1], b[i][2], b[i][3]); };
-    return {cubic(Bu, row(0), row(1), row(2), row(3)),
-            quadratic(Qu, cubic(Bv, U00, left[0], left[1], U03), cubic(Bv, U10, U11, U12, U13),
-                      cubic(Bv, U20, -right[0], -right[1], U23)),
-            quadratic(Qv, cubic(Bu, W00, bottom[0], bottom[1], W30), cubic(Bu, W01, W11, W21, W31),
-                      cubic(Bu, W02, -top[0], -top[1], W32))};
+    // One after the other: in an argument list the order would be the compiler's.
+    V const s0 = cubic(Bv, b[0][0], b[0][1], b[0][2], b[0][3]),
+            s1 = cubic(Bv, b[1][0], b[1][1], b[1][2], b[1][3]),
+            s2 = cubic(Bv, b[2][0], b[2][1], b[2][2], b[2][3]),
+            s3 = cubic(Bv, b[3][0], b[3][1], b[3][2], b[3][3]);
+    V const position = cubic(Bu, s0, s1, s2, s3);
+    V const U0 = cubic(Bv, U00, left[0], left[1], U03), U1 = cubic(Bv, U10, U11, U12, U13),
+            U2 = cubic(Bv, U20, -right[0], -right[1], U23);
+    V const W0 = cubic(Bu, W00, bottom[0], bottom[1], W30), W1 = cubic(Bu, W01, W11, W21, W31),
+            W2 = cubic(Bu, W02, -top[0], -top[1], W32);
+    V const along_u = quadratic(Qu, U0, U1, U2);
+    V const along_v = quadratic(Qv, W0, W1, W2);
+    return {position, along_u, along_v};
 }
 
 struct AccQuadInside : TangentPairCorners<4> {
