@@ -6,6 +6,7 @@
 #include "io/model.h"
 #include "tests/support/files.h"
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
@@ -290,8 +291,18 @@ TEST_P(OnModels, GregorySchemesPassUnderAHundredContractions)
         expect_clean(c.check(), std::string(scheme) + " on " + GetParam());
         c.settings.rays = 0;
         c.settings.frame.machine.contraction = Contraction::Mixed;
-        for (int seed = 0; seed < seeds; ++seed) {
-            c.settings.frame.machine.seed = std::uint64_t(seed);
+        glm::vec3 low(INFINITY), high(-INFINITY);
+        for (glm::vec3 const& p : c.mesh.mesh->positions) low = min(low, p), high = max(high, p);
+        float const size = glm::length(high - low);
+        auto const map = std::make_shared<Displacement>(Displacement::studs(size / 16, size / 100));
+        SpineRig const rig(*c.mesh.mesh);
+        FrameSettings& f = c.settings.frame;
+        for (int seed = 0; seed < seeds; ++seed) { // plain, displaced, animated, adaptive in turn
+            f.machine.seed = std::uint64_t(seed);
+            f.displacement = seed % 4 == 1 ? map : nullptr;
+            f.pose = seed % 4 == 2 ? std::make_shared<Pose>(rig.sway(seed * 0.01)) : nullptr;
+            f.adaptive = {
+                seed % 4 == 3 ? AdaptiveFactors::Kind::Pixels : AdaptiveFactors::Kind::None, 8};
             expect_clean(c.check(), std::string(scheme) + " on " + GetParam());
         }
     }
