@@ -88,6 +88,24 @@ public:
         return dot(glm::vec3(hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z), r.direction) < 0;
     }
 
+    /// The first triangle beyond `near`, and how far it is; -1 for none.
+    std::pair<std::int64_t, float> first_hit(glm::vec3 origin, glm::vec3 direction,
+                                             float near) const
+    {
+        RTCRayHit hit{};
+        hit.ray.org_x = origin.x, hit.ray.org_y = origin.y, hit.ray.org_z = origin.z;
+        hit.ray.dir_x = direction.x, hit.ray.dir_y = direction.y, hit.ray.dir_z = direction.z;
+        hit.ray.tnear = near;
+        hit.ray.tfar = INFINITY;
+        hit.ray.mask = 0xffffffffu;
+        hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcIntersect1(scene_.get(), &context, &hit);
+        if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {-1, INFINITY};
+        return {std::int64_t(hit.hit.primID), hit.ray.tfar};
+    }
+
 private:
     struct Release {
         void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
@@ -260,6 +278,64 @@ RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::ui
         out.confirmed.push_back({r.origin, r.target, r.aimed_at});
     }
     return out;
+}
+
+VisibilityCheck check_visibility(RayMesh const& mesh,
+                                 std::vector<std::uint32_t> const& face_of_triangle,
+                                 std::vector<std::int64_t> const& seen, Camera const& camera,
+                                 int width, int height, ThreadPool const& threads)
+{
+    Scene const scene(mesh.positions, mesh.triangles);
+    float const aspect = float(width) / float(height);
+    glm::vec3 const right = camera.right() * (aspect / camera.focal),
+                    up = camera.true_up() / camera.focal, forward = -camera.backward();
+    auto const direction = [&](float x, float y) {
+        return forward + (2 * x / float(width) - 1) * right + (1 - 2 * y / float(height)) * up;
+    };
+    auto const face_at = [&](glm::vec3 d) -> std::int64_t {
+        std::int64_t const t = scene.first_hit(camera.eye, d, 0).first;
+        return t < 0 ? -1 : std::int64_t(face_of_triangle[std::size_t(t)]);
+    };
+    // Is the raster's face as far away as the first hit?
+    auto const is_as_far = [&](glm::vec3 d, std::int64_t face) {
+        auto [t, first] = scene.first_hit(camera.eye, d, 0);
+        float at = first;
+        for (int k = 0; k < 8 && t >= 0 && at <= first * 1.0001f; ++k) {
+            if (std::int64_t(face_of_triangle[std::size_t(t)]) == face) return true;
+            std::tie(t, at) = scene.first_hit(camera.eye, d, at * (1 + 0x1p-22f));
+        }
+        return false;
+    };
+    std::vector<VisibilityCheck> rows(static_cast<std::size_t>(height));
+    threads.parallel_for(rows.size(), [&](std::size_t row) {
+        VisibilityCheck& out = rows[row];
+        float const y = float(row) + 0.5f;
+        for (int i = 0; i < width; ++i) {
+            float const x = float(i) + 0.5f;
+            std::int64_t const raster = seen[row * std::size_t(width) + std::size_t(i)];
+            std::int64_t const ray = face_at(direction(x, y));
+            if (raster < 0 && ray < 0) continue;
+            ++out.pixels;
+            if (raster == ray) continue;
+            bool beside = false;
+            for (int k = 0; k < 9 && !beside; ++k)
+                beside = face_at(direction(x + float(k % 3 - 1) / 64, y + float(k / 3 - 1) / 64)) ==
+                         raster;
+            if (beside)
+                ++(raster < 0 || ray < 0 ? out.silhouettes : out.edges);
+            else if (raster >= 0 && is_as_far(direction(x, y), raster))
+                ++out.depths;
+            else
+                out.unexplained.push_back({i, int(row)});
+        }
+    });
+    VisibilityCheck all;
+    for (VisibilityCheck const& r : rows) {
+        all.pixels += r.pixels, all.edges += r.edges, all.silhouettes += r.silhouettes;
+        all.depths += r.depths;
+        all.unexplained.insert(all.unexplained.end(), r.unexplained.begin(), r.unexplained.end());
+    }
+    return all;
 }
 
 } // namespace tessemu

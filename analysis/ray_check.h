@@ -11,9 +11,11 @@
 #pragma once
 
 #include "emu/parallel.h"
+#include "pipeline/camera.h"
 
 #include <glm/vec3.hpp>
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -55,5 +57,22 @@ struct RayCheck {
 ///              for each miss
 RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::uint32_t seed,
                     ThreadPool const& threads);
+
+/// A picture's visible triangles against Embree's first hits, pixel by pixel.
+struct VisibilityCheck {
+    std::uint64_t pixels = 0;      ///< that either of them sees the surface in
+    std::uint64_t edges = 0;       ///< differ where another face lies within 1/64 pixel
+    std::uint64_t silhouettes = 0; ///< differ where the background does
+    std::uint64_t depths = 0;      ///< differ where both faces are as far away, to 1e-4
+    std::vector<std::array<int, 2>> unexplained;
+};
+
+/// \param face_of_triangle  of the mesh
+/// \param seen              the face that the raster shows in each pixel, row after row; -1: none
+/// The raster rounds vertices to 1/256 pixel, so edges may lie a little beside Embree's.
+VisibilityCheck check_visibility(RayMesh const& mesh,
+                                 std::vector<std::uint32_t> const& face_of_triangle,
+                                 std::vector<std::int64_t> const& seen, Camera const& camera,
+                                 int width, int height, ThreadPool const& threads);
 
 } // namespace tessemu

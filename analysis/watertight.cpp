@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/watertight.h"
 
+#include "shaders_cpp/pixel/id_view.h"
+
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -378,12 +380,64 @@ private:
                 add(v, site);
             }
         }
-        v.reason = "Embree missed " + std::to_string(refuted + folds + past + v.failures) +
+        std::uint64_t const confirmed = v.failures;
+        std::string pictures;
+        // Instances number their triangles, and points moved by parity are in the picture alone.
+        if (!s_.frame.direct3d10 && s_.frame.parity == 0) {
+            VisibilityCheck const c =
+                check_visibility(surface_.rays(), surface_.face_of_triangle(), visible_faces(),
+                                 s_.frame.camera, s_.frame.width, s_.frame.height, threads_);
+            v.checked += c.pixels;
+            for (auto const& pixel : c.unexplained) {
+                CrackSite site;
+                site.pixel[0] = pixel[0], site.pixel[1] = pixel[1];
+                site.text = "pixel " + std::to_string(pixel[0]) + ", " + std::to_string(pixel[1]) +
+                            ": the picture and Embree's first hit show other patches";
+                add(v, site);
+            }
+            pictures = "; of " + std::to_string(c.pixels) + " pixels " +
+                       std::to_string(c.edges + c.silhouettes + c.depths + c.unexplained.size()) +
+                       " show another patch: " + std::to_string(c.edges) + " beside an edge, " +
+                       std::to_string(c.silhouettes) + " at a silhouette, " +
+                       std::to_string(c.depths) + " at equal depth, " +
+                       std::to_string(c.unexplained.size()) + " unexplained";
+        }
+        v.reason = "Embree missed " + std::to_string(refuted + folds + past + confirmed) +
                    " rays: " + std::to_string(refuted) + " hit by exact arithmetic, " +
                    std::to_string(folds) + " meet a fold that is closed, " + std::to_string(past) +
                    " pass the outline by a rounding; " + std::to_string(control) +
-                   " missed on a control with equal edges";
+                   " missed on a control with equal edges" + pictures;
         return v;
+    }
+
+    /// The face that each pixel shows, -1 for none.
+    std::vector<std::int64_t> visible_faces() const
+    {
+        int const width = s_.frame.width, height = s_.frame.height;
+        ColorTarget color(width, height, Format::R32G32B32A32_FLOAT);
+        DepthTarget depth(width, height, Format::D32_FLOAT);
+        color.clear({-1, -1, -1, -1}, threads_);
+        depth.clear(1, 0, threads_);
+        RasterTarget raster{{&color}, &depth, {{0, 0, float(width), float(height), 0, 1}}};
+        raster.rasterizer.cull = CullMode::None;
+        PassSettings settings = pass_settings(s_.frame);
+        settings.view_projection = view_projection(s_.frame.camera, float(width) / float(height));
+        float number = 0;
+        settings.pixel_shader = [&](PatchKind const&) {
+            return make_pixel_program(IdPixelShader{number++}, s_.frame.machine);
+        };
+        std::vector<DrawPass> const passes = frame_passes(patches_, s_.frame, settings);
+        for (DrawPass const& pass : passes) draw_pass(pass, &raster, {}, threads_);
+        std::vector<std::int64_t> out;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                auto const c = color.load(x, y);
+                out.push_back(
+                    c[0] < 0
+                        ? -1
+                        : std::int64_t(passes[std::size_t(c[1])].patches[std::size_t(c[0])].face));
+            }
+        return out;
     }
 
     static constexpr int kLattice = 256;

@@ -299,6 +299,13 @@ template <class Warn>
 void assign_coordinates(Scan const& scan, Parsed const& parsed, ControlMesh& mesh, Warn const& warn)
 {
     auto const all = std::int64_t(parsed.coordinates.size());
+    for (glm::vec2 const& c : parsed.coordinates)
+        if (!(std::abs(c.x) <= kMaxCoordinate && std::abs(c.y) <= kMaxCoordinate)) {
+            warn(scan.face_line.front(),
+                 fmt::format("texture coordinates are {} {}, the limit is {}: the mesh gets none",
+                             c.x, c.y, kMaxCoordinate));
+            return;
+        }
     std::size_t at = 0;
     for (std::size_t f = 0; f < parsed.corners.size(); ++f)
         for (std::uint32_t i = 0; i < parsed.corners[f]; ++i, ++at) {

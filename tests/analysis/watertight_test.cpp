@@ -264,6 +264,37 @@ TEST(RayCheck, RaysAtVerticesAccuseEmbreeNotTheSurface)
     EXPECT_GT(c.refuted, c.misses / 2);
 }
 
+// Two triangles side by side, seen head on: what the picture shows must be what rays hit, or lie
+// beside an edge.
+TEST(Visibility, ExplainsEdgesAndNothingElse)
+{
+    RayMesh m;
+    m.positions = {{-1, -1, 0}, {0, -1, 0}, {0, 1, 0}, {-1, 1, 0}, {1, -1, 0}, {1, 1, 0}};
+    m.triangles = {0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2};
+    std::vector<std::uint32_t> const face{7, 7, 9, 9};
+    Camera camera;
+    camera.eye = {0, 0, 4};
+    constexpr int kSize = 64;
+    auto const seen = [&](int shift) { // the left half shows face 7, the right one face 9
+        std::vector<std::int64_t> out;
+        float const half = camera.focal / 4 * kSize / 2; // of a unit at the target, in pixels
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) {
+                float const px = float(x - shift) + 0.5f - kSize / 2,
+                            py = float(y) + 0.5f - kSize / 2;
+                bool const inside = std::abs(px) < half && std::abs(py) < half;
+                out.push_back(!inside ? -1 : px < 0 ? 7 : 9);
+            }
+        return out;
+    };
+    ThreadPool const threads;
+    VisibilityCheck const good = check_visibility(m, face, seen(0), camera, kSize, kSize, threads);
+    EXPECT_GT(good.pixels, 1000u);
+    EXPECT_TRUE(good.unexplained.empty());
+    VisibilityCheck const bad = check_visibility(m, face, seen(1), camera, kSize, kSize, threads);
+    EXPECT_GT(bad.unexplained.size(), 30u) << "a column of pixels shows the wrong face";
+}
+
 TEST(RayCheck, DoesNotDependOnThreads)
 {
     RayMesh const sphere = uv_sphere();

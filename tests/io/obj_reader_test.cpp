@@ -138,6 +138,7 @@ TEST(ObjReader, BadTextureCoordinatesAreDroppedWithALine)
           {"vt 0 0\nf 1/1 2/1 3\n", "a.obj:5: "},
           {"vt 0\nf 1/1 2/1 3/1\n", "a.obj:4: "},
           {"vt nan 0\nvt inf 1\nf 1/1 2/1 3/1\n", "a.obj:4: "},
+          {"vt 0 1e30\nf 1/1 2/1 3/1\n", "a.obj:5: "},
           {"vt 0 0\nf 1/-2 2/1 3/1\n", "a.obj:5: "},
           {"vt 0 0\nf 1/0 2/1 3/1\n", "a.obj:5: "}}) {
         ObjFile const obj = read_obj(vertices + rest, "a.obj");
