@@ -334,8 +334,15 @@ std::string check_table(std::vector<VerdictRow> const& verdicts, std::size_t mos
     std::string out =
         fmt::format("{:<10} {:<8} {:>12} {:>10}\n", "", "verdict", "checked", "failures");
     for (VerdictRow const& v : verdicts) {
+        bool const is_short = v.reason.size() <= 60;
         out += fmt::format("{:<10} {:<8} {:>12} {:>10}  {}\n", v.name, v.verdict,
-                           counted(v.checked), counted(v.failures), v.reason);
+                           counted(v.checked), counted(v.failures), is_short ? v.reason : "");
+        std::string_view rest = is_short ? std::string_view() : v.reason;
+        while (!rest.empty()) { // a part a line
+            std::size_t const end = std::min(rest.find("; "), rest.size());
+            out += fmt::format("    {}\n", rest.substr(0, end));
+            rest.remove_prefix(std::min(end + 2, rest.size()));
+        }
         for (std::size_t i = 0; i < std::min(most, v.sites.size()); ++i)
             out += "    " + v.sites[i].text + "\n";
         if (v.failures > most) out += fmt::format("    and {} more\n", counted(v.failures - most));
