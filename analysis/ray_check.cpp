@@ -242,9 +242,7 @@ RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::ui
         return r;
     };
 
-    Scene const scene(mesh.positions, mesh.triangles);
-    std::optional<Scene> control;
-    if (!mesh.control.empty()) control.emplace(mesh.control, mesh.triangles);
+    std::optional<Scene> scene(std::in_place, mesh.positions, mesh.triangles);
     constexpr std::uint64_t kPiece = 4096;
     struct Piece {
         std::vector<std::uint64_t> misses;
@@ -254,17 +252,24 @@ RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::ui
     threads.parallel_for(pieces.size(), [&](std::size_t p) {
         for (std::uint64_t i = p * kPiece; i < std::min(rays, (p + 1) * kPiece); ++i) {
             Ray const r = ray(i);
-            if (!scene.meets_front(r)) pieces[p].misses.push_back(i);
-            if (control) pieces[p].control_misses += !control->meets_front(r);
+            if (!scene->meets_front(r)) pieces[p].misses.push_back(i);
         }
     });
     out.rays = rays;
     std::vector<std::uint64_t> misses;
     for (Piece const& p : pieces) {
         misses.insert(misses.end(), p.misses.begin(), p.misses.end());
-        out.control_misses += p.control_misses;
     }
     out.misses = misses.size();
+    scene.reset(); // one tree in memory at a time
+    if (!misses.empty() && !mesh.control.empty()) {
+        Scene const control(mesh.control, mesh.triangles);
+        threads.parallel_for(pieces.size(), [&](std::size_t p) {
+            for (std::uint64_t i = p * kPiece; i < std::min(rays, (p + 1) * kPiece); ++i)
+                pieces[p].control_misses += !control.meets_front(ray(i));
+        });
+        for (Piece const& p : pieces) out.control_misses += p.control_misses;
+    }
     std::vector<Crossings> exact(misses.size());
     threads.parallel_for(misses.size(),
                          [&](std::size_t k) { exact[k] = cross_exactly(mesh, ray(misses[k])); });
@@ -318,9 +323,10 @@ VisibilityCheck check_visibility(RayMesh const& mesh,
             ++out.pixels;
             if (raster == ray) continue;
             bool beside = false;
-            for (int k = 0; k < 9 && !beside; ++k)
-                beside = face_at(direction(x + float(k % 3 - 1) / 64, y + float(k / 3 - 1) / 64)) ==
-                         raster;
+            constexpr int kAround = 8; // steps of 1/512 pixel to each side
+            for (int k = -kAround; k <= kAround && !beside; ++k)
+                for (int l = -kAround; l <= kAround && !beside; ++l)
+                    beside = face_at(direction(x + float(l) / 512, y + float(k) / 512)) == raster;
             if (beside)
                 ++(raster < 0 || ray < 0 ? out.silhouettes : out.edges);
             else if (raster >= 0 && is_as_far(direction(x, y), raster))

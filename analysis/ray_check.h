@@ -44,11 +44,12 @@ struct RayMiss {
 
 struct RayCheck {
     std::uint64_t rays = 0;
-    std::uint64_t misses = 0;         ///< of Embree
-    std::uint64_t refuted = 0;        ///< misses that exact arithmetic finds to meet a front
-    std::uint64_t folds = 0;          ///< misses of a surface that is closed there, but inside out
-    std::uint64_t past = 0;           ///< rays that pass the outline of the surface by a rounding
-    std::uint64_t control_misses = 0; ///< of the same rays on the control
+    std::uint64_t misses = 0;  ///< of Embree
+    std::uint64_t refuted = 0; ///< misses that exact arithmetic finds to meet a front
+    std::uint64_t folds = 0;   ///< misses of a surface that is closed there, but inside out
+    std::uint64_t past = 0;    ///< rays that pass the outline of the surface by a rounding
+    std::uint64_t control_misses =
+        0; ///< of the same rays on the control, run where there are misses
     std::vector<RayMiss> confirmed;
 };
 

@@ -222,12 +222,19 @@ public:
 
     std::vector<CheckedVerdict> run()
     {
-        return {topology(),
-                equal_bits("position", kPosition),
-                equal_bits("normal", kNormal),
-                displaced(),
-                coverage(),
-                raycast()};
+        std::vector<CheckedVerdict> out;
+        auto const add = [&](CheckedVerdict verdict) {
+            out.push_back(std::move(verdict));
+            if (s_.progress) s_.progress(out.size() + 1, 7); // the tessellation was the first step
+        };
+        if (s_.progress) s_.progress(1, 7);
+        add(topology());
+        add(equal_bits("position", kPosition));
+        add(equal_bits("normal", kNormal));
+        add(displaced());
+        add(coverage());
+        add(raycast());
+        return out;
     }
 
 private:

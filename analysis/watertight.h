@@ -53,9 +53,10 @@ PlantedMistake plant_mistake(Topology const& topology, Mistake kind);
 
 struct WatertightSettings {
     FrameSettings frame; ///< its camera, size and factors; contraction, displacement, pose, mistake
-    std::uint64_t rays = 200000; ///< of each kind; 0: no raycast
-    std::size_t list = 100;      ///< sites a verdict lists at most
-    std::uint32_t seed = 1;      ///< of the rays
+    std::uint64_t rays = 200000;                            ///< of each kind; 0: no raycast
+    std::size_t list = 100;                                 ///< sites a verdict lists at most
+    std::uint32_t seed = 1;                                 ///< of the rays
+    std::function<void(std::size_t, std::size_t)> progress; ///< steps done, of all; may be empty
 };
 
 /// The verdicts in the order above.

@@ -416,9 +416,12 @@ int run_check(Options const& o)
     if (*mistake != Mistake::None)
         c.emplace_back("break_face", std::int64_t(s.frame.mistake.face) + 1);
     ThreadPool const threads(o.threads);
+    ProgressBar bar;
+    s.progress = [&](std::size_t n, std::size_t all) { bar(n, all); };
     Stopwatch const clock;
     std::vector<CheckedVerdict> const verdicts =
         check_watertight(*job.prepared.topology, *job.patches, s, threads);
+    bar.clear();
     add_run(job.header, job, threads, clock.seconds());
     std::vector<VerdictRow> rows;
     for (CheckedVerdict const& v : verdicts) {
