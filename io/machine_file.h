@@ -13,7 +13,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "analysis/machine_model.h"
+#include "io/machine_model.h"
 
 #include <string_view>
 #include <vector>
