@@ -75,22 +75,22 @@ public:
     /// True if the ray meets a front first.
     bool meets_front(Ray const& r) const
     {
-        RTCRayHit hit{};
-        hit.ray.org_x = r.origin.x, hit.ray.org_y = r.origin.y, hit.ray.org_z = r.origin.z;
-        hit.ray.dir_x = r.direction.x, hit.ray.dir_y = r.direction.y, hit.ray.dir_z = r.direction.z;
-        hit.ray.tfar = INFINITY;
-        hit.ray.mask = 0xffffffffu;
-        hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcIntersect1(scene_.get(), &context, &hit);
-        if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
-        return dot(glm::vec3(hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z), r.direction) < 0;
+        RTCRayHit const hit = trace(r.origin, r.direction, 0);
+        return hit.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
+               dot(glm::vec3(hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z), r.direction) < 0;
     }
 
     /// The first triangle beyond `near`, and how far it is; -1 for none.
     std::pair<std::int64_t, float> first_hit(glm::vec3 origin, glm::vec3 direction,
                                              float near) const
+    {
+        RTCRayHit const hit = trace(origin, direction, near);
+        if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {-1, INFINITY};
+        return {std::int64_t(hit.hit.primID), hit.ray.tfar};
+    }
+
+private:
+    RTCRayHit trace(glm::vec3 origin, glm::vec3 direction, float near) const
     {
         RTCRayHit hit{};
         hit.ray.org_x = origin.x, hit.ray.org_y = origin.y, hit.ray.org_z = origin.z;
@@ -102,11 +102,9 @@ public:
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         rtcIntersect1(scene_.get(), &context, &hit);
-        if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {-1, INFINITY};
-        return {std::int64_t(hit.hit.primID), hit.ray.tfar};
+        return hit;
     }
 
-private:
     struct Release {
         void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
         void operator()(RTCScene s) const { rtcReleaseScene(s); }
