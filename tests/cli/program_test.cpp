@@ -207,7 +207,7 @@ TEST(Program, CheckExitsOneWhereAVerdictFails)
         EXPECT_EQ(a["verdicts"][name]["verdict"], "pass") << name;
     EXPECT_EQ(a["verdicts"]["displaced"]["verdict"], "skipped");
     EXPECT_FALSE(a["verdicts"]["displaced"]["reason"].get<std::string>().empty());
-    EXPECT_EQ(a["witness"]["raycast"]["checked"], 4000);
+    EXPECT_GT(a["witness"]["raycast"]["checked"], 4000) << "rays, and pixels of the picture";
     EXPECT_EQ(
         Json::parse(
             run("check golem --size 128x128 --rays 2000 -j 1 --lanes 4 --json -").out)["hash"],
