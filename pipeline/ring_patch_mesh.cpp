@@ -30,6 +30,10 @@ public:
 
     std::vector<DrawPass> passes(PassSettings const& settings) const override
     {
+        if (settings.mistake.kind == Mistake::Weights)
+            throw Error(
+                "the mistake 'weights' needs weights of one patch, which the stencil form has: "
+                "in the two-stage form a vertex is the same for all its patches");
         // At rest the texture is the mesh's; in a pose a pass before the draws fills another.
         std::shared_ptr<std::vector<float>> moved;
         if (settings.pose) moved = std::make_shared<std::vector<float>>(rings_.positions.size());

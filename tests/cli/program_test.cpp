@@ -114,6 +114,7 @@ TEST(Program, BadUsageExitsTwoWithOneLineThatNamesTheValue)
              {"check golem --break glass", "topleft"},
              {"check golem --break fold --break-face 71", "70 faces"},
              {"check golem --break fold --direct3d 10", "tessellator"},
+             {"check golem --break weights --scheme pm", "stencil form"},
              {"draw jug --view error --error-max 1", "POSITION,ANGLE"},
              {"draw jug --view error --error-max 0,1", "above 0"},
              {"draw spindle --view error", "needs quads"},
