@@ -17,8 +17,10 @@ namespace tessemu {
 
 namespace {
 
-// Differences of floats, products of three of them and a few sums need at most 113 bits unless
-// exponents lie far apart.
+// 113 bits hold differences of floats, products of three of them and a few sums, unless exponents
+// lie far apart. Where they do not, an edge's sign is rounded, but to the same value for both
+// triangles: its two products only change places. So crossings of a closed mesh balance all the
+// same.
 #if LDBL_MANT_DIG >= 113
 using Exact = long double;
 #else
@@ -255,9 +257,7 @@ RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::ui
     });
     out.rays = rays;
     std::vector<std::uint64_t> misses;
-    for (Piece const& p : pieces) {
-        misses.insert(misses.end(), p.misses.begin(), p.misses.end());
-    }
+    for (Piece const& p : pieces) misses.insert(misses.end(), p.misses.begin(), p.misses.end());
     out.misses = misses.size();
     scene.reset(); // one tree in memory at a time
     if (!misses.empty() && !mesh.control.empty()) {

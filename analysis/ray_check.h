@@ -1,8 +1,9 @@
-// Rays against a closed triangle mesh: Embree as a witness, exact arithmetic as the judge.
+// Rays against a closed triangle mesh: Embree as a witness, 113-bit arithmetic as the judge.
 //
 // A ray from outside must meet a front before any back. Embree's own answers are not exact: it
 // loses rays that pass close to vertices, in robust mode too. So each ray that seems to slip
-// through is traced again over all triangles in arithmetic that is exact for floats. Through a
+// through is traced again over all triangles in 113-bit arithmetic, whose decisions at an edge are
+// the same for both of its triangles. Through a
 // closed surface as many fronts as backs are crossed on the whole way: where they do not balance
 // the ray found a hole. Where they do, Embree lost a hit, or the surface is folded over itself and
 // shows its inside.
@@ -45,7 +46,7 @@ struct RayMiss {
 struct RayCheck {
     std::uint64_t rays = 0;
     std::uint64_t misses = 0;  ///< of Embree
-    std::uint64_t refuted = 0; ///< misses that exact arithmetic finds to meet a front
+    std::uint64_t refuted = 0; ///< misses that 113-bit arithmetic finds to meet a front
     std::uint64_t folds = 0;   ///< misses of a surface that is closed there, but inside out
     std::uint64_t past = 0;    ///< rays that pass the outline of the surface by a rounding
     std::uint64_t control_misses =

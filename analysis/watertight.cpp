@@ -383,7 +383,7 @@ private:
                 site.text = "a ray at the patch of face " + std::to_string(site.face[0] + 1) +
                             " slips through at " + std::to_string(m.target.x) + ", " +
                             std::to_string(m.target.y) + ", " + std::to_string(m.target.z) +
-                            ": exact arithmetic confirms it";
+                            ": 113-bit arithmetic confirms it";
                 add(v, site);
             }
         }
@@ -410,7 +410,7 @@ private:
                        std::to_string(c.unexplained.size()) + " unexplained";
         }
         v.reason = "Embree missed " + std::to_string(refuted + folds + past + confirmed) +
-                   " rays: " + std::to_string(refuted) + " hit by exact arithmetic, " +
+                   " rays: " + std::to_string(refuted) + " hit in 113-bit arithmetic, " +
                    std::to_string(folds) + " meet a fold that is closed, " + std::to_string(past) +
                    " pass the outline by a rounding; " + std::to_string(control) +
                    " missed on a control with equal edges" + pictures;

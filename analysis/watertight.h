@@ -7,7 +7,7 @@
 //   coverage   on a closed, unclipped surface every sample has as many front as back hits, before
 //              depth: in a picture, and in one whose vertices are rounded to half pixels, where
 //              edges run through samples
-//   raycast    rays from outside meet a front first; Embree traces, exact arithmetic decides; and
+//   raycast    rays from outside meet a front first; Embree traces, 113-bit arithmetic decides; and
 //   the
 //              picture shows the patches that Embree sees, or a reason why not
 //
