@@ -127,8 +127,7 @@ public:
     {
         int const threads = size_[0] * size_[1] * size_[2];
         for (int first = 0; first < threads; first += N) {
-            execution.activate((1u << std::min(N, threads - first)) - 1);
-            site_state.scope = site_state.next = phase_;
+            begin_group<T>((1u << std::min(N, threads - first)) - 1, phase_);
             // A number per lane, by way of an array: g++ 12 takes elements written one by one for
             // uninitialised.
             auto const lanes = [&](auto const& number) {
@@ -208,7 +207,7 @@ public:
 
 template <class Shader, class T> class ComputeProgramOn final : public ComputeProgram {
 public:
-    ComputeProgramOn(Shader const& shader, std::uint64_t seed) : shader_(shader), seed_(seed) {}
+    ComputeProgramOn(Shader const& shader, SiteState const& sites) : shader_(shader), sites_(sites) {}
     std::array<int, 3> threads() const override { return Shader::kThreads; }
     int shared_floats() const override
     {
@@ -225,7 +224,7 @@ public:
     void run(std::array<std::uint32_t, 3> const& groups, std::uint64_t first, std::uint64_t count,
              StageCounters& counters, StageBuffers const& buffers) const override
     {
-        StageScope const scope(counters, buffers, seed_);
+        StageScope const scope(counters, buffers, sites_);
         std::vector<float> shared(static_cast<std::size_t>(shared_floats()));
         ComputeGroup<T> group(Shader::kThreads, shared);
         for (std::uint64_t g = first; g < first + count; ++g) {
@@ -242,7 +241,7 @@ public:
 
 private:
     Shader shader_;
-    std::uint64_t seed_;
+    SiteState sites_;
 };
 
 template <class Shader>

@@ -1,11 +1,10 @@
-// Contracted<T, Policy>: a scalar on which products that feed sums may be fused, as shader
-// compilers do.
+// Contracted<T>: a scalar on which products that feed sums may be fused, as shader compilers do.
 //
-// A product is a proxy; a sum that meets one becomes a multiply-add with one rounding, anything
-// else rounds it. Policy All fuses each; Mixed decides site by site from a seed. A site is a place
-// in the source: loop<T>() makes every turn of a loop the same sites, Routine<T> makes a shared
-// function number its sums from its own start for every caller, and when() numbers a branch whether
-// or not it is taken.
+// A product is a proxy; a sum that meets one asks the thread whether it takes it, as a multiply-add
+// with one rounding, or rounds it first. Anything else rounds it. The answer is the same
+// everywhere, or decided site by site from a seed. A site is a place in the source: loop<T>() makes
+// every turn of a loop the same sites, Routine<T> makes a shared function number its sums from its
+// own start for every caller, and when() numbers a branch whether or not it is taken.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -16,9 +15,20 @@
 
 namespace tessemu {
 
-/// Where mixed contraction is in the source.
+/// What the shader compiler does to a product that feeds a sum (choice I-6).
+enum class Contraction {
+    None,  ///< two roundings
+    All,   ///< one rounding wherever a sum can take the product
+    Mixed, ///< site by site, from a seed; for testing shaders
+};
+
+/// The rule that the thread's sums follow, and where in the source it is.
 struct SiteState {
+    Contraction contraction = Contraction::None;
     std::uint64_t seed = 0, scope = 0, next = 0;
+
+    /// Whether the next sum takes its product.
+    bool fuses();
 };
 constinit inline thread_local SiteState site_state{};
 
@@ -32,6 +42,12 @@ constexpr std::uint64_t mix(std::uint64_t a, std::uint64_t b)
 }
 } // namespace detail
 
+inline bool SiteState::fuses()
+{
+    if (contraction != Contraction::Mixed) return contraction == Contraction::All;
+    return detail::mix(detail::mix(seed, scope), next++) & 1;
+}
+
 /// Numbers the sites of a piece of source that is entered here, and restores the caller's
 /// numbering.
 template <class T> class SiteScope {
@@ -41,8 +57,8 @@ public:
     ~SiteScope()
     {
         if constexpr (ScalarTraits<T>::kSites) {
-            site_state.scope = saved_.scope;
-            site_state.next = saved_.next + 1;
+            site_state.scope = scope_;
+            site_state.next = next_ + 1;
         }
     }
     void restart()
@@ -56,29 +72,25 @@ private:
     void enter(std::uint64_t scope)
     {
         if constexpr (ScalarTraits<T>::kSites) {
-            saved_ = site_state;
+            scope_ = site_state.scope;
+            next_ = site_state.next;
             site_state.scope = scope;
             site_state.next = 0;
         }
     }
-    SiteState saved_{};
+    std::uint64_t scope_ = 0, next_ = 0;
 };
 
-namespace policy {
-struct All {
-    static constexpr bool kSites = false;
-    static bool fuse() { return true; }
-};
-struct Mixed {
-    static constexpr bool kSites = true;
-    static bool fuse()
-    {
-        return detail::mix(detail::mix(site_state.seed, site_state.scope), site_state.next++) & 1;
-    }
-};
-} // namespace policy
+/// A group of invocations starts at the shader's first line, with these lanes.
+///
+/// \param first_site  numbers the sites from here on; not 0 where several pieces of one shader follow
+template <class T> void begin_group(std::uint32_t active_bits, std::uint64_t first_site = 0)
+{
+    execution.activate(active_bits);
+    if constexpr (ScalarTraits<T>::kSites) site_state.scope = site_state.next = first_site;
+}
 
-template <class T, class Policy> struct Contracted {
+template <class T> struct Contracted {
     T value;
 
     struct Product {
@@ -97,13 +109,16 @@ template <class T, class Policy> struct Contracted {
     friend Product operator*(Contracted a, Contracted b) { return {a.value, b.value}; }
 
     friend Contracted operator+(Contracted a, Contracted b) { return T(a.value + b.value); }
-    friend Contracted operator+(Product p, Contracted c) { return fuse(p, c.value); }
-    friend Contracted operator+(Contracted c, Product p) { return fuse(p, c.value); }
-    friend Contracted operator+(Product p, Product q) { return fuse(p, T(q.a * q.b)); }
+    friend Contracted operator+(Product p, Contracted c) { return fuse(p.a, p.b, c.value); }
+    friend Contracted operator+(Contracted c, Product p) { return fuse(p.a, p.b, c.value); }
+    friend Contracted operator+(Product p, Product q) { return fuse(p.a, p.b, T(q.a * q.b)); }
     friend Contracted operator-(Contracted a, Contracted b) { return T(a.value - b.value); }
-    friend Contracted operator-(Product p, Contracted c) { return fuse(p, T(-c.value)); }
-    friend Contracted operator-(Contracted c, Product p) { return fuse(-p, c.value); }
-    friend Contracted operator-(Product p, Product q) { return fuse(p, T(-T(q.a * q.b))); }
+    friend Contracted operator-(Product p, Contracted c) { return fuse(p.a, p.b, T(-c.value)); }
+    friend Contracted operator-(Contracted c, Product p) { return fuse(T(-p.a), p.b, c.value); }
+    friend Contracted operator-(Product p, Product q)
+    {
+        return fuse(p.a, p.b, T(-T(q.a * q.b)));
+    }
 
     friend Contracted operator/(Contracted a, Contracted b) { return T(a.value / b.value); }
     friend Contracted operator-(Contracted a) { return T(-a.value); }
@@ -128,15 +143,16 @@ template <class T, class Policy> struct Contracted {
     }
 
 private:
-    static Contracted fuse(Product p, T c)
+    // Out of line: a shader has hundreds of sums, and the question is asked at each.
+    [[gnu::noinline]] static Contracted fuse(T a, T b, T c)
     {
-        if (Policy::fuse()) return T(mad(p.a, p.b, c));
-        return T(T(p.a * p.b) + c);
+        if (site_state.fuses()) return T(mad(a, b, c));
+        return T(T(a * b) + c);
     }
 };
 
-template <class T, class Policy> struct ScalarTraits<Contracted<T, Policy>> : ScalarTraits<T> {
-    static constexpr bool kSites = Policy::kSites;
+template <class T> struct ScalarTraits<Contracted<T>> : ScalarTraits<T> {
+    static constexpr bool kSites = true;
 };
 
 /// The lanes (or the number) inside a scalar's wrappers.
@@ -152,7 +168,7 @@ template <class T> auto lanes_value(Counted<T> x)
 {
     return lanes_value(x.value);
 }
-template <class T, class P> auto lanes_value(Contracted<T, P> x)
+template <class T> auto lanes_value(Contracted<T> x)
 {
     return lanes_value(x.value);
 }

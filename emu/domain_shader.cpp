@@ -24,7 +24,7 @@ public:
         for (ResourceInfo& r : epilog_->resources()) all.push_back(std::move(r));
         return all;
     }
-    std::uint64_t seed() const override { return shader_->seed(); }
+    SiteState sites() const override { return shader_->sites(); }
     void run(DomainBatch const& batch, int patch_constants, StageCounters& counters) const override
     {
         DomainBatch b = batch;

@@ -79,8 +79,8 @@ public:
     /// `patch_constants` says how many registers the hull shader wrote.
     virtual void run(DomainBatch const& batch, int patch_constants,
                      StageCounters& counters) const = 0;
-    /// The contraction seed of the stage's door.
-    virtual std::uint64_t seed() const = 0;
+    /// The contraction of the stage's door.
+    virtual SiteState sites() const = 0;
 };
 
 namespace detail {
@@ -88,8 +88,7 @@ namespace detail {
 template <class T> void begin_domain_group(std::size_t left)
 {
     constexpr std::size_t N = lanes_of<T>;
-    execution.activate(left >= N ? (1u << N) - 1 : (1u << left) - 1);
-    if constexpr (ScalarTraits<T>::kSites) site_state.scope = site_state.next = 0;
+    begin_group<T>(left >= N ? (1u << N) - 1 : (1u << left) - 1);
 }
 template <class T, TessellatorDomain kDomain>
 DomainInput<T> domain_input(DomainBatch const& b, std::size_t first)
@@ -110,22 +109,36 @@ template <class Shader, class T> class DomainProgramOn final : public DomainProg
     static constexpr std::size_t kBlock = 256; // points that an epilog finds in the nearest cache
 
 public:
-    DomainProgramOn(Shader const& shader, std::uint64_t seed) : shader_(shader), seed_(seed) {}
+    DomainProgramOn(Shader const& shader, SiteState const& sites) : shader_(shader), sites_(sites) {}
     TessellatorDomain domain() const override { return Shader::kDomain; }
     int control_points() const override { return Shader::kControlPoints; }
     int control_point_floats() const override { return scalar_count<Point>(); }
     int patch_constant_floats() const override { return scalar_count<Constant>(); }
     OutputLayout output() const override { return output_layout<Output>(); }
     std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
-    std::uint64_t seed() const override { return seed_; }
+    SiteState sites() const override { return sites_; }
 
-    // Flattened: only where shader and views are one function do the counts fold to a few
-    // additions. With a sanitizer's checks in it that function would take minutes to compile.
+    void run(DomainBatch const& b, int patch_constants, StageCounters& counters) const override
+    {
+        if constexpr (ScalarTraits<T>::kSites)
+            run_points(b, patch_constants, counters);
+        else
+            run_flattened(b, patch_constants, counters);
+    }
+
+private:
+    // Only where shader and views are one function do the counts fold to a few additions. With a
+    // sanitizer's checks in it that function would take minutes to compile.
 #if !defined(__SANITIZE_ADDRESS__)
     [[gnu::flatten]]
 #endif
     void
-    run(DomainBatch const& b, int patch_constants, StageCounters& counters) const override
+    run_flattened(DomainBatch const& b, int patch_constants, StageCounters& counters) const
+    {
+        run_points(b, patch_constants, counters);
+    }
+
+    void run_points(DomainBatch const& b, int patch_constants, StageCounters& counters) const
     {
         ControlPoints<Point> const points(b.control_points, Shader::kControlPoints);
         ControlPoints<Constant> const constants(b.patch_constants, patch_constants);
@@ -150,9 +163,8 @@ public:
         counters.constant_touched += constants.touched();
     }
 
-private:
     Shader shader_;
-    std::uint64_t seed_;
+    SiteState sites_;
 };
 
 template <class Shader>
@@ -167,7 +179,7 @@ template <class Shader, class T> class DomainEpilogOn final : public DomainEpilo
     using Output = typename Shader::template Output<T>;
 
 public:
-    DomainEpilogOn(Shader const& shader, std::uint64_t) : shader_(shader) {}
+    DomainEpilogOn(Shader const& shader, SiteState const&) : shader_(shader) {}
     int input_floats() const override { return scalar_count<Input>(); }
     OutputLayout output() const override { return output_layout<Output>(); }
     std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }

@@ -134,7 +134,7 @@ void GeometryStages::shade_patches(GeometryChunk& c) const
     }
     c.stride = points;
     c.shaded.resize(points * std::size_t(d_.domain_shader->output_floats()));
-    StageScope const scope(c.counters.domain, ds_buffers_, d_.domain_shader->seed());
+    StageScope const scope(c.counters.domain, ds_buffers_, d_.domain_shader->sites());
     for (std::size_t p = 0; p < c.count; ++p) run_domain_shader(c, p);
 }
 
@@ -145,7 +145,7 @@ void GeometryStages::shade_patch_alone(GeometryChunk& c, std::size_t p) const
     c.stride = padded(c.patterns[p]->patch.points()) | kPadding;
     std::size_t const floats = c.stride * std::size_t(d_.domain_shader->output_floats());
     if (c.shaded.size() < floats) c.shaded.resize(floats);
-    StageScope const scope(c.counters.domain, ds_buffers_, d_.domain_shader->seed());
+    StageScope const scope(c.counters.domain, ds_buffers_, d_.domain_shader->sites());
     run_domain_shader(c, p);
 }
 

@@ -174,7 +174,7 @@ template <class Shader, class T> class GeometryProgramOn final : public Geometry
     }
 
 public:
-    GeometryProgramOn(Shader const& shader, std::uint64_t seed) : shader_(shader), seed_(seed) {}
+    GeometryProgramOn(Shader const& shader, SiteState const& sites) : shader_(shader), sites_(sites) {}
     PrimitiveTopology input_topology() const override { return Shader::kInput; }
     int input_vertices() const override
     {
@@ -190,14 +190,13 @@ public:
     void run(GeometryBatch const& b, GeometryResult& result, StageCounters& counters,
              StageBuffers const& buffers) const override
     {
-        StageScope const scope(counters, buffers, seed_);
+        StageScope const scope(counters, buffers, sites_);
         auto const n = std::size_t(input_vertices());
         std::size_t const primitives = b.primitive_ids.size();
         std::vector<Input> in(n);
         VertexStream<Output> stream(Shader::kMaxVertices, instance_count());
         for (std::size_t first = 0; first < primitives; first += N) {
             int const active = int(std::min<std::size_t>(N, primitives - first));
-            execution.activate((1u << active) - 1);
             GeometryInput<T> input{IntLanes<N>(0), 0};
             for (int l = 0; l < active; ++l)
                 input.primitive_id.raw[l] = b.primitive_ids[first + std::size_t(l)];
@@ -215,7 +214,7 @@ public:
             stream.begin_group();
             for (int i = 0; i < instance_count(); ++i) {
                 input.instance_id = i;
-                site_state.scope = site_state.next = 0;
+                begin_group<T>((1u << active) - 1);
                 stream.begin_instance();
                 shader_(input, std::span<Input const>(in), stream);
             }
@@ -260,7 +259,7 @@ private:
     }
 
     Shader shader_;
-    std::uint64_t seed_;
+    SiteState sites_;
 };
 
 template <class Shader>

@@ -81,7 +81,7 @@ template <class Shader, class T> class HullProgramOn final : public HullProgram 
     static_assert(kConst <= 4, "a patch constant is one register of four scalars");
 
 public:
-    HullProgramOn(Shader const& shader, std::uint64_t seed) : shader_(shader), seed_(seed) {}
+    HullProgramOn(Shader const& shader, SiteState const& sites) : shader_(shader), sites_(sites) {}
     TessellatorDomain domain() const override { return Shader::kDomain; }
     int input_floats() const override { return int(kIn); }
     int input_fetch_floats() const override { return ControlPoints<Input>::kFetchScalars; }
@@ -100,7 +100,7 @@ public:
     void run(HullBatch const& b, StageCounters& counters,
              StageBuffers const& buffers) const override
     {
-        StageScope const scope(counters, buffers, seed_);
+        StageScope const scope(counters, buffers, sites_);
         int const n = b.input_control_points;
         int const points = shader_.control_points(), constants = shader_.patch_constants();
         std::vector<float> inputs(std::size_t(n) * kIn);
@@ -124,8 +124,7 @@ public:
                 Constant const c = shader_.template patch_constant<T>(patch, input, output, id);
                 scatter(c, registers, first, active);
             });
-            execution.activate(1);
-            site_state.scope = site_state.next = 0;
+            begin_group<T>(1);
             std::array<T, 6> const f =
                 shader_.template tess_factors<T>(patch, input, output, forked);
             for (std::size_t i = 0; i < 6; ++i) b.factors[p][i] = lanes_value(f[i]).raw[0];
@@ -145,8 +144,7 @@ private:
     {
         for (int first = 0; first < count; first += N) {
             int const active = std::min(N, count - first);
-            execution.activate((1u << active) - 1);
-            site_state.scope = site_state.next = 0;
+            begin_group<T>((1u << active) - 1);
             work(IntLanes<N>::iota() + IntLanes<N>(first), first, active);
         }
     }
@@ -162,7 +160,7 @@ private:
     }
 
     Shader shader_;
-    std::uint64_t seed_;
+    SiteState sites_;
 };
 
 template <class Shader>

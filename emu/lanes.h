@@ -135,14 +135,31 @@ template <int N> struct Lanes {
     friend Mask<N> operator!=(Lanes a, Lanes b) { return Mask<N>(a.raw != b.raw); }
 
     friend Lanes select(Mask<N> m, Lanes a, Lanes b) { return Lanes(Raw(m.raw ? a.raw : b.raw)); }
+    // These round correctly, so one instruction gives the loop's bits.
     friend Lanes sqrt(Lanes a)
     {
+#if defined(__AVX512F__)
+        if constexpr (N == 16)
+            return Raw(_mm512_maskz_sqrt_ps(__mmask16(-1), __m512(a.raw)));
+#endif
+#if defined(__AVX__)
+        if constexpr (N == 8) return Raw(_mm256_sqrt_ps(__m256(a.raw)));
+        if constexpr (N == 4) return Raw(_mm_sqrt_ps(__m128(a.raw)));
+#endif
         Lanes r;
         for (int i = 0; i < N; ++i) r.raw[i] = __builtin_sqrtf(a.raw[i]);
         return r;
     }
     friend Lanes floor(Lanes a)
     {
+#if defined(__AVX512F__)
+        if constexpr (N == 16)
+            return Raw(_mm512_maskz_roundscale_ps(__mmask16(-1), __m512(a.raw), _MM_FROUND_FLOOR));
+#endif
+#if defined(__AVX__)
+        if constexpr (N == 8) return Raw(_mm256_floor_ps(__m256(a.raw)));
+        if constexpr (N == 4) return Raw(_mm_floor_ps(__m128(a.raw)));
+#endif
         Lanes r;
         for (int i = 0; i < N; ++i) r.raw[i] = __builtin_floorf(a.raw[i]);
         return r;
@@ -175,6 +192,16 @@ template <int N> struct Lanes {
     }
     friend Lanes mad(Lanes a, Lanes b, Lanes c)
     {
+#if defined(__AVX512F__)
+        if constexpr (N == 16)
+            return Raw(_mm512_fmadd_ps(__m512(a.raw), __m512(b.raw), __m512(c.raw)));
+#endif
+#if defined(__FMA__)
+        if constexpr (N == 8)
+            return Raw(_mm256_fmadd_ps(__m256(a.raw), __m256(b.raw), __m256(c.raw)));
+        if constexpr (N == 4)
+            return Raw(_mm_fmadd_ps(__m128(a.raw), __m128(b.raw), __m128(c.raw)));
+#endif
         Lanes r;
         for (int i = 0; i < N; ++i) r.raw[i] = fused_multiply_add(a.raw[i], b.raw[i], c.raw[i]);
         return r;
@@ -192,8 +219,10 @@ template <int N> struct ScalarTraits<Lanes<N>> {
 /// The widest lanes that the build's instruction set fills.
 #if defined(__AVX512F__)
 inline constexpr int kNativeLanes = 16;
-#else
+#elif defined(__AVX__)
 inline constexpr int kNativeLanes = 8;
+#else
+inline constexpr int kNativeLanes = 4;
 #endif
 
 } // namespace tessemu

@@ -1,5 +1,9 @@
-// The machine a shader runs on: lanes, contraction, and the table that turns both into a scalar
-// type.
+// The machine a shader runs on: lanes, contraction, and the two scalar types that it is compiled for.
+//
+// Fast: the widest lanes that the build's instruction set fills, products and sums apart. Checking:
+// four lanes, the fewest that derivatives need, where each sum asks at run time whether it takes
+// its product; with Contraction::None it gives the fast machine's bits and counts. A build with
+// TESSEMU_ALL_LANES has both for 4, 8 and 16 lanes, to show that results do not depend on them.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -9,53 +13,57 @@
 #include "emu/memory.h"
 
 #include <memory>
+#include <vector>
 
 namespace tessemu {
 
-/// What the shader compiler does to a product that feeds a sum (choice I-6).
-enum class Contraction {
-    None,  ///< two roundings
-    All,   ///< one rounding wherever a sum can take the product
-    Mixed, ///< site by site, from a seed; for testing shaders
-};
-
 struct Machine {
-    int lanes = kNativeLanes; ///< 4, 8 or 16; changes no result and no count
+    int lanes = kNativeLanes; ///< that the build holds; changes no result and no count
     Contraction contraction = Contraction::None;
     std::uint64_t seed = 0; ///< of Contraction::Mixed
+    /// Runs the checking form though nothing is contracted.
+    bool checking = false;
+
+    /// The thread's state at a stage's door.
+    SiteState sites() const { return {contraction, seed, 0, 0}; }
 };
 
-namespace detail {
-template <template <class, class> class Program, class Interface, class Shader, int N>
-std::unique_ptr<Interface> make_program_on(Shader const& shader, Machine const& machine)
-{
-    using T = Counted<Lanes<N>>;
-    switch (machine.contraction) {
-    case Contraction::All:
-        return std::make_unique<Program<Shader, Contracted<T, policy::All>>>(shader, machine.seed);
-    case Contraction::Mixed:
-        return std::make_unique<Program<Shader, Contracted<T, policy::Mixed>>>(shader,
-                                                                               machine.seed);
-    default:
-        return std::make_unique<Program<Shader, T>>(shader, machine.seed);
-    }
-}
-} // namespace detail
+template <int N> using FastLanes = Counted<Lanes<N>>;
+template <int N> using CheckLanes = Contracted<Counted<Lanes<N>>>;
+using FastScalar = FastLanes<kNativeLanes>;
+using CheckScalar = CheckLanes<4>;
+
+/// Lane counts that the build holds, ascending.
+#if defined(TESSEMU_ALL_LANES)
+inline constexpr int kBuiltLanes[] = {4, 8, 16};
+#else
+inline constexpr int kBuiltLanes[] = {kNativeLanes};
+#endif
+
+/// Throws Error that names the build option for lanes that the build does not hold.
+void check_lanes(int lanes);
 
 /// A stage's program: the shader compiled for the machine's scalar.
 template <template <class, class> class Program, class Interface, class Shader>
 std::unique_ptr<Interface> make_program(Shader const& shader, Machine const& machine)
 {
+    check_lanes(machine.lanes);
+    auto const on = [&]<class T>(std::type_identity<T>) -> std::unique_ptr<Interface> {
+        return std::make_unique<Program<Shader, T>>(shader, machine.sites());
+    };
+    bool const checking = machine.checking || machine.contraction != Contraction::None;
+#if defined(TESSEMU_ALL_LANES)
     switch (machine.lanes) {
     case 4:
-        return detail::make_program_on<Program, Interface, Shader, 4>(shader, machine);
+        return checking ? on(std::type_identity<CheckLanes<4>>()) : on(std::type_identity<FastLanes<4>>());
     case 8:
-        return detail::make_program_on<Program, Interface, Shader, 8>(shader, machine);
-    case 16:
-        return detail::make_program_on<Program, Interface, Shader, 16>(shader, machine);
+        return checking ? on(std::type_identity<CheckLanes<8>>()) : on(std::type_identity<FastLanes<8>>());
     default:
-        throw Error("lanes is " + std::to_string(machine.lanes) + ", it must be 4, 8 or 16");
+        return checking ? on(std::type_identity<CheckLanes<16>>()) : on(std::type_identity<FastLanes<16>>());
     }
+#else
+    return checking ? on(std::type_identity<CheckScalar>()) : on(std::type_identity<FastScalar>());
+#endif
 }
 
 /// Buffers and textures that a shader reads; shaders without any need not say so.

@@ -46,8 +46,12 @@ struct PixelShaderInfo {
     int color_targets = 0;
     bool writes_depth = false, writes_coverage = false, discards = false;
     bool force_early = false, sample_frequency = false;
+};
+
+/// What a run of one invocation shows: control flow cannot depend on lanes.
+struct PixelShaderCost {
     std::uint32_t features = 0; ///< ShaderFeature bits
-    FlopCount flops; ///< of one invocation, where features has neither branches nor fetches
+    FlopCount flops; ///< of every invocation, where features has neither branches nor fetches
 };
 
 /// Fragments, arrays per component; whole groups of 16 may be read and written.
@@ -74,6 +78,8 @@ public:
     virtual std::vector<ResourceInfo> resources() const = 0;
     virtual void run(FragmentBatch const& batch, StageCounters& counters,
                      StageBuffers const& buffers) const = 0;
+    /// Runs one invocation on zeros.
+    PixelShaderCost probe() const;
 
 protected:
     PixelShaderInfo info_;
@@ -84,6 +90,16 @@ template <class Shader, class T> class PixelProgramOn final : public PixelProgra
     using Input = typename Shader::template Input<T>;
     using Output = std::remove_cvref_t<decltype(std::declval<Shader const&>()(
         std::declval<PixelInput<T> const&>(), std::declval<Input const&>()))>;
+    static constexpr int color_targets()
+    {
+        if constexpr (std::same_as<Output, float4<T>> || requires(Output o) { o.color.w; })
+            return 1;
+        else if constexpr (requires(Output o) { o.color; })
+            return int(detail::array_size<decltype(Output::color)>);
+        else
+            return 0;
+    }
+    static constexpr int kColors = color_targets();
     static constexpr bool kDepth = requires(Output o) { o.depth; };
     static constexpr bool kCoverage = requires(Output o) { o.coverage; };
     static constexpr bool kDiscard = requires(Output o) { o.discard; };
@@ -99,9 +115,10 @@ template <class Shader, class T> class PixelProgramOn final : public PixelProgra
     }
 
 public:
-    PixelProgramOn(Shader const& shader, std::uint64_t seed) : shader_(shader), seed_(seed)
+    PixelProgramOn(Shader const& shader, SiteState const& sites) : shader_(shader), sites_(sites)
     {
         describe_inputs();
+        info_.color_targets = kColors;
         info_.writes_depth = kDepth;
         info_.writes_coverage = kCoverage;
         info_.discards = kDiscard;
@@ -112,23 +129,38 @@ public:
         for (Interpolation i : info_.interpolation)
             if (i == Interpolation::LinearSample || i == Interpolation::LinearNoperspectiveSample)
                 info_.sample_frequency = true; // R114
-        probe();
     }
     std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
 
-    // Flattened for the reason of DomainProgramOn::run.
+    void run(FragmentBatch const& b, StageCounters& counters,
+             StageBuffers const& buffers) const override
+    {
+        if constexpr (ScalarTraits<T>::kSites)
+            run_fragments(b, counters, buffers);
+        else
+            run_flattened(b, counters, buffers);
+    }
+
+private:
+    // Flattened for the reason of DomainProgramOn's.
 #if !defined(__SANITIZE_ADDRESS__)
     [[gnu::flatten]]
 #endif
     void
-    run(FragmentBatch const& b, StageCounters& counters, StageBuffers const& buffers) const override
+    run_flattened(FragmentBatch const& b, StageCounters& counters,
+                  StageBuffers const& buffers) const
     {
-        StageScope const scope(counters, buffers, seed_);
+        run_fragments(b, counters, buffers);
+    }
+
+    void run_fragments(FragmentBatch const& b, StageCounters& counters,
+                       StageBuffers const& buffers) const
+    {
+        StageScope const scope(counters, buffers, sites_);
         for (std::size_t first = 0; first < b.count; first += N) {
             std::uint32_t const active = active_lanes(b, first);
             if (active == 0) continue; // helpers only
-            execution.activate(active);
-            site_state.scope = site_state.next = 0;
+            begin_group<T>(active);
             auto const lanes = [&](float const* p) { return T(Lanes<N>::load(p + first)); };
             PixelInput<T> pixel;
             pixel.position = {lanes(b.position[0]), lanes(b.position[1]), lanes(b.position[2]),
@@ -154,7 +186,6 @@ public:
         }
     }
 
-private:
     static std::uint32_t active_lanes(FragmentBatch const& b, std::size_t first)
     {
         std::size_t const left = b.count - first;
@@ -184,31 +215,8 @@ private:
         }
     }
 
-    // One run on zeros tells what the shader does: its control flow cannot depend on lanes.
-    void probe()
-    {
-        Execution const saved = execution;
-        SiteState const saved_sites = site_state;
-        execution = Execution{};
-        site_state = SiteState{seed_, 0, 0};
-        PixelInput<T> pixel{};
-        Input input{};
-        auto const zero = [](auto& s) { s = std::remove_cvref_t<decltype(s)>(0.0f); };
-        for_each_scalar(pixel.position, zero);
-        for_each_scalar(input, zero);
-        pixel.primitive_id = pixel.sample_index = pixel.coverage = IntLanes<N>(0);
-        pixel.front_face = Mask<N>(false);
-        int colors = 0;
-        for_each_color(shader_(pixel, input), [&](float4<T> const&) { ++colors; });
-        info_.color_targets = colors;
-        info_.features = execution.features;
-        info_.flops = execution.take();
-        execution = saved;
-        site_state = saved_sites;
-    }
-
     Shader shader_;
-    std::uint64_t seed_;
+    SiteState sites_;
 };
 
 template <class Shader>

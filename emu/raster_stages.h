@@ -37,7 +37,12 @@ public:
         : target_(with_all_viewports(target, desc)),
           buffers_(desc.pixel_shader ? desc.pixel_shader->resources()
                                      : std::vector<ResourceInfo>{}),
-          setup_{target_, {}, desc.pixel_shader.get(), layout, buffers_},
+          setup_{target_,
+                 {},
+                 desc.pixel_shader.get(),
+                 desc.pixel_shader ? desc.pixel_shader->probe() : PixelShaderCost{},
+                 layout,
+                 buffers_},
           assembler_(target_,
                      desc.pixel_shader
                          ? std::span<Interpolation const>(desc.pixel_shader->info().interpolation)
@@ -146,7 +151,7 @@ public:
         for (std::uint64_t n : passed) all += n;
         counters.passed_samples += all;
         counters.pixel.invocations += all; // shading is pure: what fails might never have run
-        counters.pixel.flops += setup_.pixel_shader->info().flops * all;
+        counters.pixel.flops += setup_.pixel_cost.flops * all;
         std::uint64_t fragments = 0;
         for (Chunk const& c : wave) fragments += c.fragment_count;
         counters.covered_samples += fragments;

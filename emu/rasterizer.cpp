@@ -161,7 +161,7 @@ TileRasterizer::TileRasterizer(RasterSetup const& setup, Rect tile, RasterCounte
     // R131: early where nobody can tell.
     early_ = info_.force_early || !(info_.writes_depth || info_.writes_coverage || info_.discards ||
                                     (setup.target.blend.alpha_to_coverage && setup.pixel_shader));
-    quads_ = (info_.features & kDerivatives) != 0;
+    quads_ = (setup.pixel_cost.features & kDerivatives) != 0;
     attributes_.resize(info_.interpolation.size() * kRow);
     for (std::size_t k = 0; k < info_.interpolation.size(); ++k)
         attribute_rows_.push_back(attributes_.data() + k * kRow);

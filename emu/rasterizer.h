@@ -41,6 +41,7 @@ struct RasterSetup {
     RasterTarget const& target;
     std::vector<Rect> bounds;         ///< per viewport: viewport, scissor and target (R98)
     PixelProgram const* pixel_shader; ///< null: depth and stencil only
+    PixelShaderCost pixel_cost;
     OutputLayout layout;              ///< of the vertices
     StageBuffers const& buffers;
 };

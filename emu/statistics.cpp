@@ -91,6 +91,7 @@ StageCounters& StageCounters::operator+=(StageCounters const& o)
         buffer_fetches[i] += o.buffer_fetches[i], buffer_writes[i] += o.buffer_writes[i];
     shared_loads += o.shared_loads, shared_stores += o.shared_stores;
     shared_out_of_range += o.shared_out_of_range;
+    features |= o.features;
     return *this;
 }
 

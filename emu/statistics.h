@@ -63,6 +63,7 @@ struct StageCounters {
     std::uint64_t output_fetches = 0, output_touched = 0; ///< a hull shader's own control points
     std::array<std::uint64_t, kBufferSlots> buffer_fetches{}, buffer_writes{};
     std::uint64_t shared_loads = 0, shared_stores = 0, shared_out_of_range = 0;
+    std::uint32_t features = 0; ///< ShaderFeature bits that its shader showed
 
     StageCounters& operator+=(StageCounters const& o);
 };
@@ -85,7 +86,7 @@ private:
 /// and on leaving adds what was counted to `counters`.
 class StageScope {
 public:
-    StageScope(StageCounters& counters, StageBuffers const& buffers, std::uint64_t site_seed = 0)
+    StageScope(StageCounters& counters, StageBuffers const& buffers, SiteState const& sites = {})
         : counters_(counters),
           slots_(buffers.slots()),
           saved_(execution),
@@ -93,11 +94,12 @@ public:
     {
         execution = Execution{};
         execution.buffers = slots_.data();
-        site_state = SiteState{site_seed, 0, 0};
+        site_state = sites;
     }
     ~StageScope()
     {
         counters_.flops += execution.take();
+        counters_.features |= execution.features;
         for (std::size_t i = 0; i < slots_.size(); ++i)
             counters_.buffer_fetches[i] += slots_[i].count,
                 counters_.buffer_writes[i] += slots_[i].written;

@@ -14,7 +14,7 @@ bool TriangleStream::supports(RasterSetup const& setup, bool triangles)
         t.color.size() != 1 || !t.color[0] || !t.depth || t.viewports.size() != 1)
         return false;
     PixelShaderInfo const& ps = setup.pixel_shader->info();
-    bool const pure = ps.features == 0 && !ps.writes_depth && !ps.writes_coverage && !ps.discards &&
+    bool const pure = setup.pixel_cost.features == 0 && !ps.writes_depth && !ps.writes_coverage && !ps.discards &&
                       !ps.sample_frequency && ps.color_targets == 1;
     RasterizerState const& r = t.rasterizer;
     bool const plain = r.fill == FillMode::Solid && r.depth_bias == 0 &&

@@ -52,7 +52,7 @@ template <class Shader, class T> class VertexProgramOn final : public VertexProg
     using Output = typename Shader::template Output<T>;
 
 public:
-    VertexProgramOn(Shader const& shader, std::uint64_t seed) : shader_(shader), seed_(seed) {}
+    VertexProgramOn(Shader const& shader, SiteState const& sites) : shader_(shader), sites_(sites) {}
     int input_floats() const override { return scalar_count<Input>(); }
     OutputLayout output() const override { return output_layout<Output>(); }
     std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
@@ -61,11 +61,11 @@ public:
              StageBuffers const& buffers) const override
     {
         std::span<std::uint32_t const> const ids = batch.ids;
-        StageScope const scope(counters, buffers, seed_);
+        StageScope const scope(counters, buffers, sites_);
         constexpr std::size_t in = scalar_count<Input>(), out = scalar_count<Output>();
         for (std::size_t first = 0; first < ids.size(); first += N) {
             int const active = int(std::min<std::size_t>(N, ids.size() - first));
-            execution.activate((1u << active) - 1);
+            begin_group<T>((1u << active) - 1);
             IntLanes<N> id(0), index(0);
             float fetched[N][in + 1] = {};
             for (int l = 0; l < active; ++l) {
@@ -82,7 +82,6 @@ public:
                 s = T(v);
                 ++k;
             });
-            site_state.scope = site_state.next = 0;
             Output const output =
                 shader_(VertexInput<T>{index, std::int32_t(batch.instance)}, input);
             if (!outputs) continue;
@@ -100,7 +99,7 @@ public:
 
 private:
     Shader shader_;
-    std::uint64_t seed_;
+    SiteState sites_;
 };
 
 template <class Shader>

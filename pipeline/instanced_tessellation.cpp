@@ -117,7 +117,7 @@ public:
     void run(VertexBatch const& batch, float* outputs, StageCounters& counters,
              StageBuffers const& buffers) const override
     {
-        StageScope const scope(counters, buffers, domain_->seed());
+        StageScope const scope(counters, buffers, domain_->sites());
         std::size_t const n = batch.ids.size(), stride = (n + 15) / 16 * 16;
         auto const floats = std::size_t(domain_->output_floats());
         std::vector<float> u(stride), v(stride), shaded(stride * floats);

@@ -48,7 +48,7 @@ for compiler in g++ clang++; do
     for level in O0 O2; do
         folder=build/determinism/$compiler-$level
         cmake -S . -B "$folder" -G Ninja -DCMAKE_CXX_COMPILER=$compiler -DCMAKE_BUILD_TYPE= \
-            -DCMAKE_CXX_FLAGS="-$level -march=native" -DTESSEMU_BUILD_TESTS=OFF -DTESSEMU_BUILD_BENCH=OFF >/dev/null
+            -DCMAKE_CXX_FLAGS="-$level -march=native" -DTESSEMU_ALL_LANES=ON -DTESSEMU_BUILD_TESTS=OFF -DTESSEMU_BUILD_BENCH=OFF >/dev/null
         cmake --build "$folder" --target tessemu_program
         for model in "${models[@]}"; do
             for threads in 1 2 3 8; do

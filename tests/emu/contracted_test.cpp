@@ -11,36 +11,58 @@
 namespace tessemu {
 namespace {
 
-using All = Contracted<float, policy::All>;
-using Mixed = Contracted<float, policy::Mixed>;
+using C = Contracted<float>;
+
+// The thread's rule, and none again afterwards.
+class Under {
+public:
+    explicit Under(Contraction contraction, std::uint64_t seed = 0)
+    {
+        site_state = {contraction, seed, 0, 0};
+    }
+    ~Under() { site_state = {}; }
+};
 
 float const a = 1.0f + 0x1p-12f,
             c = -(1.0f + 0x1p-11f); // a * a + c: 0 in two roundings, 2^-24 in one
 
 TEST(Contracted, AllFusesAProductThatFeedsASum)
 {
-    All const x(a), y(c);
-    EXPECT_EQ(All(x * x + y).value, 0x1p-24f);
-    EXPECT_EQ(All(y + x * x).value, 0x1p-24f);
-    EXPECT_EQ(All(x * x - All(-c)).value, 0x1p-24f);
-    EXPECT_EQ(All(All(-c) - x * x).value, -0x1p-24f);
-    All const rounded = x * x; // a named product is rounded
-    EXPECT_EQ(All(rounded + y).value, 0.0f);
+    Under const all(Contraction::All);
+    C const x(a), y(c);
+    EXPECT_EQ(C(x * x + y).value, 0x1p-24f);
+    EXPECT_EQ(C(y + x * x).value, 0x1p-24f);
+    EXPECT_EQ(C(x * x - C(-c)).value, 0x1p-24f);
+    EXPECT_EQ(C(C(-c) - x * x).value, -0x1p-24f);
+    C const rounded = x * x; // a named product is rounded
+    EXPECT_EQ(C(rounded + y).value, 0.0f);
     EXPECT_EQ(a * a + c, 0.0f);
+}
+
+TEST(Contracted, NoneRoundsTwiceAndCountsAProductAndASum)
+{
+    using T = Contracted<Counted<float>>;
+    execution = Execution{};
+    T const x{Counted<float>(a)}, y{Counted<float>(c)};
+    EXPECT_EQ(T(x * x + y).value.value, 0.0f);
+    EXPECT_EQ(T(y - x * x).value.value, c - a * a);
+    EXPECT_EQ(execution.take(), (FlopCount{.add = 2, .mul = 2}));
 }
 
 TEST(Contracted, VectorsFuseComponentByComponent)
 {
-    float3<All> const v{All(c), All(c), All(0.0f)};
-    float3<All> const w{All(a), All(a), All(a)};
-    float3<All> const r = All(a) * w + v;
+    Under const all(Contraction::All);
+    float3<C> const v{C(c), C(c), C(0.0f)};
+    float3<C> const w{C(a), C(a), C(a)};
+    float3<C> const r = C(a) * w + v;
     EXPECT_EQ(r.x.value, 0x1p-24f);
     EXPECT_EQ(r.z.value, a * a);
 }
 
 TEST(Contracted, CountsFusedSumsAsMads)
 {
-    using T = Contracted<Counted<float>, policy::All>;
+    using T = Contracted<Counted<float>>;
+    Under const all(Contraction::All);
     execution = Execution{};
     T const x{Counted<float>(a)}, y{Counted<float>(c)};
     (void)T(x * x + y);
@@ -60,21 +82,20 @@ template <class T> T shared_routine(T x)
 TEST(Mixed, ARoutineDecidesAlikeForEveryCaller)
 {
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
-        site_state = {seed, 0, 0};
-        float const first = shared_routine(Mixed(a)).value;
-        Mixed const other = Mixed(a) * Mixed(a) + Mixed(c); // other sums before it
+        Under const mixed(Contraction::Mixed, seed);
+        float const first = shared_routine(C(a)).value;
+        C const other = C(a) * C(a) + C(c); // other sums before it
         (void)other;
-        EXPECT_EQ(shared_routine(Mixed(a)).value, first) << seed;
+        EXPECT_EQ(shared_routine(C(a)).value, first) << seed;
     }
-    site_state = {};
 }
 
 TEST(Mixed, SeedsDecideDifferently)
 {
     std::set<float> results;
     for (std::uint64_t seed = 0; seed < 50; ++seed) {
-        site_state = {seed, 0, 0};
-        results.insert(Mixed(Mixed(a) * Mixed(a) + Mixed(c)).value);
+        Under const mixed(Contraction::Mixed, seed);
+        results.insert(C(C(a) * C(a) + C(c)).value);
     }
     site_state = {};
     EXPECT_EQ(results, (std::set<float>{0.0f, 0x1p-24f}));
@@ -84,15 +105,14 @@ TEST(Mixed, SeedsDecideDifferently)
 TEST(Mixed, EveryTurnOfALoopDecidesAlike)
 {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
-        site_state = {seed, 0, 0};
+        Under const mixed(Contraction::Mixed, seed);
         std::set<float> turns;
-        for (int i : loop<Mixed>(8)) {
+        for (int i : loop<C>(8)) {
             (void)i;
-            turns.insert(Mixed(Mixed(a) * Mixed(a) + Mixed(c)).value);
+            turns.insert(C(C(a) * C(a) + C(c)).value);
         }
         EXPECT_EQ(turns.size(), 1u) << seed;
     }
-    site_state = {};
 }
 
 // What follows a branch or a loop does not depend on whether the branch ran or how often the loop
@@ -102,16 +122,15 @@ TEST(Mixed, SitesAfterABranchDoNotMove)
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         float after[2];
         for (int taken = 0; taken < 2; ++taken) {
-            site_state = {seed, 0, 0};
-            Mixed const x(a), y(c);
+            Under const mixed(Contraction::Mixed, seed);
+            C const x(a), y(c);
             (void)when(
-                taken != 0, [&] { return Mixed(x * x + y); }, x);
-            for (int i : loop<Mixed>(taken ? 3 : 0)) (void)i, (void)Mixed(x * x + y);
-            after[taken] = Mixed(x * x + y).value;
+                taken != 0, [&] { return C(x * x + y); }, x);
+            for (int i : loop<C>(taken ? 3 : 0)) (void)i, (void)C(x * x + y);
+            after[taken] = C(x * x + y).value;
         }
         EXPECT_EQ(after[0], after[1]) << seed;
     }
-    site_state = {};
 }
 
 } // namespace

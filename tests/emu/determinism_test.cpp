@@ -4,6 +4,7 @@
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/texture.h"
+#include "tests/support/machines.h"
 #include "tests/support/scene.h"
 
 #include <gtest/gtest.h>
@@ -65,13 +66,12 @@ private:
     std::uint64_t h_ = 0xcbf29ce484222325u;
 };
 
-std::uint64_t picture(int threads, int lanes)
+std::uint64_t picture(int threads, Machine const& machine)
 {
     constexpr int kWidth = 200, kHeight = 150;
     Scene s(kWidth, kHeight, 4, Format::R8G8B8A8_UNORM_SRGB, Format::D24_UNORM_S8_UINT);
     s.threads = threads;
     s.clear({0.2f, 0.3f, 0.4f, 1}, 1, 3);
-    Machine const machine{lanes, Contraction::None, 0};
     std::uint32_t seed = 5;
     auto const random = [&] { // in [-1, 1)
         seed = seed * 1664525u + 1013904223u;
@@ -133,8 +133,9 @@ TEST(Determinism, R1SamplesBlendingAndStreamOutputHaveOneHash)
     // may.
     constexpr std::uint64_t kStored = 3521451868432829853u;
     for (int threads : {1, 2, 5})
-        for (int lanes : {4, 8, 16})
-            EXPECT_EQ(picture(threads, lanes), kStored) << threads << " threads " << lanes;
+        for (Machine const& machine : machines())
+            EXPECT_EQ(picture(threads, machine), kStored)
+                << threads << " threads " << testing::PrintToString(machine);
 }
 
 } // namespace

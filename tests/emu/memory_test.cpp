@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/graphics_pipeline.h"
 #include "emu/texture.h"
+#include "tests/support/machines.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -95,13 +96,11 @@ struct Counts {
     std::uint64_t unique_texels;
 };
 
-Counts run(int lanes, int threads, bool skip_second)
+Counts run(Machine const& machine, int threads, bool skip_second)
 {
     std::vector<float> const vertices{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0, 0, 2, 1, 0};
     std::vector<std::uint32_t> const indices{0, 1, 2, 3, 1, 4, 5, 2};
     std::vector<float> const table{1, 2, 3, 4}, texels(8, 0.5f);
-    Machine machine;
-    machine.lanes = lanes;
     FetchingDomain ds;
     ds.table = {table, 0, "table"};
     ds.texture = {texels, 2, 1, 3, "texture"};
@@ -134,10 +133,10 @@ Counts run(int lanes, int threads, bool skip_second)
 // Factor 4: 25 points a patch, 10 of them with u < 1/2, 5 with v = 0. Two patches.
 TEST(Fetches, AreCountedExactlyUnderMasksAndPerLane)
 {
-    for (int lanes : {4, 8, 16})
+    for (Machine const& machine : test::machines())
         for (int threads : {1, 3}) {
-            Counts const c = run(lanes, threads, false);
-            EXPECT_EQ(c.control_points, 2u * (2 * 25 + 10)) << lanes;
+            Counts const c = run(machine, threads, false);
+            EXPECT_EQ(c.control_points, 2u * (2 * 25 + 10)) << testing::PrintToString(machine);
             EXPECT_EQ(c.control_point_bytes, 12 * c.control_points);
             EXPECT_EQ(c.unique_control_point_bytes, 2u * 2 * 12); // two records of each patch
             EXPECT_EQ(c.table, 2u * 5);
@@ -149,7 +148,7 @@ TEST(Fetches, AreCountedExactlyUnderMasksAndPerLane)
 
 TEST(Fetches, ARemovedFetchIsMissed)
 {
-    EXPECT_EQ(run(8, 1, true).control_points, run(8, 1, false).control_points - 50);
+    EXPECT_EQ(run({}, 1, true).control_points, run({}, 1, false).control_points - 50);
 }
 
 // Rules R142, R143.

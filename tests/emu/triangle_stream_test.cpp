@@ -137,7 +137,7 @@ RC_GTEST_PROP(TriangleStream, SoupsEqualTheReadersRasterizerInEveryBitAndCount, 
         RC_ASSERT(n.pipeline.CPrimitives == reference.clip_primitives);
         RC_ASSERT(n.pipeline.PSInvocations == reference.passed);
         RC_ASSERT(n.samples_passed == reference.passed);
-        FlopCount const flops = d.pixel_shader->info().flops * reference.passed;
+        FlopCount const flops = d.pixel_shader->probe().flops * reference.passed;
         for (StageStatistics const& stage : n.stages)
             if (stage.stage == "pixel_shader") RC_ASSERT(stage.flops == flops);
     }

@@ -10,6 +10,7 @@
 #include "shaders_cpp/acc/acc_quad.h"
 #include "shaders_cpp/gregory/domain_shaders.h"
 #include "shaders_cpp/stencil_hull_shader.h"
+#include "tests/support/machines.h"
 
 #include <gtest/gtest.h>
 
@@ -134,10 +135,10 @@ TEST(DomainShader, RunTimeCountsEqualTheTallySummedOverInvocations)
                                 {"spindle", "gregory-stencil"},
                                 {"saddle_star", "acc"}}) {
         Built const built(name, scheme);
-        for (int lanes : {4, 8, 16}) {
+        for (Machine const& machine : test::machines()) {
             PassSettings settings;
             settings.tess_factor = 5.3f;
-            settings.machine.lanes = lanes;
+            settings.machine = machine;
             for (DrawPass const& pass : built.patches->passes(settings)) {
                 Cost expected;
                 auto const visit = [&](ShadedPatch const& p) {
@@ -158,7 +159,7 @@ TEST(DomainShader, RunTimeCountsEqualTheTallySummedOverInvocations)
                 DrawStatistics const s =
                     draw(pass.pipeline, pass.call, nullptr, visit, ThreadPool(2));
                 StageStatistics const& ds = stage(s, "domain_shader");
-                EXPECT_EQ(ds.flops, expected.flops) << pass.kind.name << " lanes " << lanes;
+                EXPECT_EQ(ds.flops, expected.flops) << pass.kind.name << testing::PrintToString(machine);
                 EXPECT_EQ(fetched(ds, "control_points"), expected.control_points) << pass.kind.name;
                 EXPECT_EQ(fetched(ds, "patch_constants"), expected.patch_constants)
                     << pass.kind.name;
@@ -188,12 +189,12 @@ TEST(HullShader, RunTimeCountsEqualThreePerNonZeroWeight)
             for (std::size_t r : rows)
                 for (double w : s.rows[r]) expected += 3 * (float(w) != 0);
         }
-        for (int lanes : {4, 8, 16}) {
+        for (Machine const& machine : test::machines()) {
             FrameSettings settings;
-            settings.machine.lanes = lanes;
+            settings.machine = machine;
             DrawStatistics const s = visit_surface(*built.patches, settings, ThreadPool(2),
                                                    [](auto const&, auto const&) {});
-            EXPECT_EQ(stage(s, "hull_shader").flops.mul, expected) << name << " lanes " << lanes;
+            EXPECT_EQ(stage(s, "hull_shader").flops.mul, expected) << name << testing::PrintToString(machine);
             EXPECT_EQ(stage(s, "hull_shader").flops.add, expected) << name;
         }
     }

@@ -2,6 +2,7 @@
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/compute_shader.h"
+#include "tests/support/machines.h"
 
 #include <gtest/gtest.h>
 
@@ -30,12 +31,12 @@ struct Ids {
 
 TEST(ComputeShader, R152R164ThreadIdsAndInvocationCounts)
 {
-    for (int lanes : {4, 8, 16})
+    for (Machine const& machine : test::machines())
         for (int threads : {1, 3}) {
             std::vector<std::int32_t> out(2 * 60 * 4, -1);
             Ids shader;
             shader.out = {out, 0, "out"};
-            auto const program = make_compute_program(shader, Machine{lanes, Contraction::None, 0});
+            auto const program = make_compute_program(shader, machine);
             DrawStatistics const n = dispatch(*program, {2, 1, 1}, ThreadPool(threads));
             EXPECT_EQ(n.pipeline.CSInvocations, 120u);
             EXPECT_EQ(n.stages[0].output_bytes, 120u * 4 * 4);
@@ -126,13 +127,13 @@ TEST(ComputeShader, R153R154I27BarriersMakeSharedMemoryVisibleAndGroupsStartPois
 {
     std::vector<float> in(64 * 5), out(5), seen(5);
     std::iota(in.begin(), in.end(), 1.0f);
-    for (int lanes : {4, 16}) {
+    for (Machine const& machine : test::machines()) {
         Reduce shader;
         shader.in = {in, 0, "in"};
         shader.out = {out, 1, "out"};
         shader.first_seen = {seen, 2, "seen"};
         DrawStatistics const n =
-            dispatch(*make_compute_program(shader, Machine{lanes, Contraction::None, 0}), {5, 1, 1},
+            dispatch(*make_compute_program(shader, machine), {5, 1, 1},
                      ThreadPool(3));
         for (int g = 0; g < 5; ++g) {
             EXPECT_EQ(out[std::size_t(g)], float(64 * (64 * g) + 64 * 65 / 2));
@@ -167,13 +168,13 @@ struct Append {
 TEST(ComputeShader, R144R154R155I24AtomicsRunInSerialOrderAndOutOfRangeStoresDoNothing)
 {
     std::vector<std::uint32_t> first;
-    for (int lanes : {4, 8, 16})
+    for (Machine const& machine : test::machines())
         for (int threads : {1, 4}) {
             std::vector<std::uint32_t> counter{0}, list(40, 999);
             Append shader;
             shader.counter = {counter, 0, "counter"};
             shader.list = {list, 1, "list"};
-            dispatch(*make_compute_program(shader, Machine{lanes, Contraction::None, 0}),
+            dispatch(*make_compute_program(shader, machine),
                      {10, 1, 1}, ThreadPool(threads));
             EXPECT_EQ(counter[0], 50u); // ten of them found no room
             for (std::uint32_t i = 0; i < 40; ++i) ASSERT_EQ(list[i], 2 * i);

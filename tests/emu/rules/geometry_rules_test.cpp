@@ -1,6 +1,7 @@
 // Rules R1 to R7, R39, R41 to R55 and R80 to R89, R156 to R166: stages before the rasterizer.
 //
 // SPDX-License-Identifier: Apache-2.0
+#include "tests/support/machines.h"
 #include "tests/support/scene.h"
 
 #include <gtest/gtest.h>
@@ -112,12 +113,12 @@ struct Streamed {
     DrawStatistics statistics;
 };
 Streamed stream_strips(std::vector<std::array<float, 2>> const& points, std::size_t bytes = 1 << 16,
-                       int lanes = 8, int threads = 2)
+                       Machine const& machine = {}, int threads = 2)
 {
     Scene s;
     s.threads = threads;
     s.call.topology = PrimitiveTopology::PointList;
-    s.desc.geometry_shader = make_geometry_program(Strips{}, Machine{lanes, Contraction::None, 0});
+    s.desc.geometry_shader = make_geometry_program(Strips{}, machine);
     s.desc.stream_output = StreamOutputDesc{{{0, 6, 2, 0}}, {}, -1}; // value.zw
     std::vector<std::byte> memory(bytes);
     StreamOutputBuffer buffer{memory, 0};
@@ -162,13 +163,13 @@ TEST(StreamOutput, R1R88AFullBufferStopsTheStreamAndCountingGoesOn)
     ASSERT_EQ(some.values.size(), 7u * 6);
     EXPECT_TRUE(std::equal(some.values.begin(), some.values.end(), all.values.begin()));
     EXPECT_EQ(stream_strips({{4, 0}}, 0).statistics.stream_output[0].NumPrimitivesWritten, 0u);
-    // R1: any threads, any lanes.
+    // R1: any threads, any machine.
     std::vector<std::array<float, 2>> many;
     for (int i = 0; i < 2000; ++i) many.push_back({float(i % 10), float(i % 4)});
-    std::vector<float> const first = stream_strips(many, 1 << 20, 4, 1).values;
-    for (int lanes : {8, 16})
+    std::vector<float> const first = stream_strips(many, 1 << 20, {}, 1).values;
+    for (Machine const& machine : machines())
         for (int threads : {1, 2, 5}) {
-            std::vector<float> const other = stream_strips(many, 1 << 20, lanes, threads).values;
+            std::vector<float> const other = stream_strips(many, 1 << 20, machine, threads).values;
             ASSERT_TRUE(other.size() == first.size() &&
                         std::memcmp(other.data(), first.data(), 4 * first.size()) == 0);
         }
