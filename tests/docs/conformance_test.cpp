@@ -1,14 +1,16 @@
-// docs/conformance.md: every rule has one row, and what a row names exists.
+// docs/conformance.md: every rule has one row, and what a row names exists. All pages: line widths.
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/files.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <regex>
 #include <set>
 #include <sstream>
+#include <vector>
 
 namespace tessemu::test {
 namespace {
@@ -59,6 +61,38 @@ TEST(Conformance, EveryRuleHasARowAndEveryTestExists)
     expect_all("V", 18);
     expect_all("I-", 29);
     EXPECT_EQ(rows.size(), 166u + 18 + 29);
+}
+
+std::size_t code_points(std::string const& line)
+{
+    return std::size_t(
+        std::count_if(line.begin(), line.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+// A row of a table, or a link or picture with nothing around it to break at.
+bool cannot_be_wrapped(std::string const& line)
+{
+    static std::regex const link(R"(!?\[[^\]]*\]\([^)]*\))");
+    std::string const rest = std::regex_replace(line, link, "");
+    return line.starts_with("|") || (rest != line && rest.find(' ') == std::string::npos);
+}
+
+TEST(Docs, LinesAreAtMostAHundredWide)
+{
+    std::vector<std::filesystem::path> pages{source("README.md"), source("CHANGELOG.md")};
+    for (char const* folder : {"docs", "docs/math"})
+        for (auto const& entry : std::filesystem::directory_iterator(source(folder)))
+            if (entry.path().extension() == ".md") pages.push_back(entry.path());
+    EXPECT_GE(pages.size(), 18u);
+    for (auto const& page : pages) {
+        std::istringstream text(read_text(page));
+        int number = 0;
+        for (std::string line; std::getline(text, line);) {
+            ++number;
+            if (cannot_be_wrapped(line)) continue;
+            EXPECT_LE(code_points(line), 100u) << page << ":" << number << ": " << line;
+        }
+    }
 }
 
 } // namespace
