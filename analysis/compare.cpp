@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/compare.h"
 
-#include <embree3/rtcore.h>
+#include "analysis/embree_scene.h"
+
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <map>
 
 namespace tessemu {
 
@@ -102,22 +103,8 @@ class ClosestPoints {
 public:
     explicit ClosestPoints(Triangles const& t)
         : t_(t),
-          device_(rtcNewDevice(nullptr)),
-          scene_(rtcNewScene(device_.get()))
+          scene_(std::span(t.position), std::span(t.index))
     {
-        RTCGeometry const g = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* const v = static_cast<float*>(rtcSetNewGeometryBuffer(
-            g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), t.position.size()));
-        for (std::size_t i = 0; i < t.position.size(); ++i)
-            for (int k = 0; k < 3; ++k) v[3 * i + std::size_t(k)] = float(t.position[i][k]);
-        auto* const n = static_cast<std::uint32_t*>(
-            rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    3 * sizeof(std::uint32_t), t.index.size() / 3));
-        std::copy(t.index.begin(), t.index.end(), n);
-        rtcCommitGeometry(g);
-        rtcAttachGeometry(scene_.get(), g);
-        rtcReleaseGeometry(g);
-        rtcCommitScene(scene_.get());
     }
 
     /// Distance and the interpolated normal of the closest point that does not face away from
@@ -164,13 +151,8 @@ private:
         return true;
     }
 
-    struct Release {
-        void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
-        void operator()(RTCScene s) const { rtcReleaseScene(s); }
-    };
     Triangles const& t_;
-    std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
-    std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
+    EmbreeScene scene_;
 };
 
 void compare_closest(Triangles const& samples, Triangles const& surface, double diagonal,
@@ -207,6 +189,30 @@ struct SchemeSamples {
     std::vector<int> sides; ///< of a quad patch that the point lies on: 0 to 2
 };
 
+// The drawn mesh's face at a patch's place, and how often the patch is turned against it.
+class FacesByPlace {
+public:
+    explicit FacesByPlace(RefinedMesh const& mesh)
+    {
+        for (std::uint32_t f = 0; f < mesh.mesh().faces(); ++f)
+            faces_[key(mesh.place(f))] = {f, mesh.place(f).rotation};
+    }
+    std::pair<std::uint32_t, PatchPlace> find(PatchPlace const& place) const
+    {
+        auto const [face, rotation] = faces_.at(key(place));
+        PatchPlace in_face;
+        in_face.sides = place.sides;
+        in_face.rotation = std::uint8_t((place.rotation + place.sides - rotation) % place.sides);
+        return {face, in_face};
+    }
+
+private:
+    using Key =
+        std::tuple<std::uint32_t, std::uint16_t, std::uint8_t, std::uint16_t, std::uint16_t>;
+    static Key key(PatchPlace const& p) { return {p.face, p.corner, p.level, p.i, p.j}; }
+    std::map<Key, std::pair<std::uint32_t, int>> faces_;
+};
+
 SchemeSamples sample_scheme(LimitSurface const& limit, PatchMesh const& patches,
                             FrameSettings settings, ThreadPool const& threads)
 {
@@ -214,26 +220,25 @@ SchemeSamples sample_scheme(LimitSurface const& limit, PatchMesh const& patches,
     settings.partitioning = Partitioning::Integer;
     SchemeSamples out;
     Triangles& scheme = out.triangles;
-    visit_surface(patches, settings, threads, [&](DrawPass const& pass, ShadedPatch const& p) {
-        PatchOrigin const& origin = pass.patches[p.primitive_id];
+    FacesByPlace const faces(patches.mesh());
+    visit_surface(patches, settings, threads, [&](SurfacePatch const& p) {
+        auto const [face, in_face] = faces.find(p.place());
         auto const first = std::uint32_t(scheme.position.size());
-        for (std::size_t i = 0; i < p.points->patch.points(); ++i) {
-            auto const component = [&](std::size_t k) {
-                return double(p.outputs[k * p.stride + i]);
-            };
-            scheme.position.emplace_back(component(0), component(1), component(2));
-            scheme.normal.emplace_back(component(4), component(5), component(6));
+        for (std::size_t i = 0; i < p.points(); ++i) {
+            SurfaceVertex const vertex = p.vertex(i);
+            scheme.position.emplace_back(vertex.position);
+            scheme.normal.emplace_back(vertex.normal);
+            float const u = p.domain().u[i], v = p.domain().v[i];
             std::uint32_t at = kNoPartner;
-            if (limit.has_grid(origin.face)) {
-                FacePoint const f = domain_to_face(origin, p.points->u[i], p.points->v[i]);
-                at = limit.vertex(origin.face, int(f.u * float(limit.grid())),
+            if (limit.has_grid(face)) {
+                UnitPoint const f = domain_to_unit(in_face, u, v);
+                at = limit.vertex(face, int(f.u * float(limit.grid())),
                                   int(f.v * float(limit.grid())));
             }
             out.partner.push_back(at);
-            float const u = p.points->u[i], v = p.points->v[i];
             out.sides.push_back((u == 0 || u == 1) + (v == 0 || v == 1));
         }
-        for (std::uint32_t i : p.points->patch.indices) scheme.index.push_back(first + i);
+        for (std::uint32_t i : p.triangles()) scheme.index.push_back(first + i);
     });
     return out;
 }
@@ -302,30 +307,30 @@ double quantile(std::vector<double> const& values, std::vector<double> const& we
     return order.empty() ? 0 : values[order.back()];
 }
 
-EqualParameterErrors equal_parameter_errors(Topology const& topology, PatchMesh const& patches,
-                                            FrameSettings settings, int level,
-                                            ThreadPool const& threads)
+EqualParameterErrors equal_parameter_errors(PatchMesh const& patches, FrameSettings settings,
+                                            int level, ThreadPool const& threads)
 {
     if (level > 6) throw LimitError("comparison level", std::uint64_t(level), 6);
-    LimitSurface const limit(topology, level);
+    LimitSurface const limit(patches.mesh().topology(), level);
     return errors_of(limit, sample_scheme(limit, patches, settings, threads),
-                     diagonal_of(topology.mesh()));
+                     diagonal_of(patches.mesh().reference()));
 }
 
-SurfaceComparison compare_with_limit(Topology const& topology, PatchMesh const& patches,
-                                     FrameSettings settings, int level, ThreadPool const& threads)
+SurfaceComparison compare_with_limit(PatchMesh const& patches, FrameSettings settings, int level,
+                                     ThreadPool const& threads)
 {
     if (level > 6) throw LimitError("comparison level", std::uint64_t(level), 6);
-    LimitSurface const limit(topology, level);
+    RefinedMesh const& mesh = patches.mesh();
+    LimitSurface const limit(mesh.topology(), level);
     SurfaceComparison out;
-    out.diagonal = diagonal_of(topology.mesh());
+    out.diagonal = diagonal_of(mesh.reference());
 
     Triangles smooth;
     smooth.position = limit.positions();
     smooth.normal = limit.normals();
     std::vector<std::string> warnings; // the patches gave them
-    std::vector<char> const hidden = hidden_faces(topology, warnings);
-    for (std::uint32_t face = 0; face < topology.mesh().faces(); ++face) {
+    std::vector<char> const hidden = hidden_faces(mesh, warnings);
+    for (std::uint32_t face = 0; face < mesh.mesh().faces(); ++face) {
         if (hidden[face]) continue;
         for (std::size_t f = limit.first_quad(face); f < limit.first_quad(face + 1); ++f) {
             auto const q = limit.quads().face(f);

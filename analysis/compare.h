@@ -26,7 +26,7 @@ struct ErrorStatistics {
 /// The scheme's surface with its error against the limit surface's point of equal parameter. Faces
 /// that are not quads are left out.
 struct EqualParameterErrors {
-    double diagonal = 0; ///< of the control mesh's bounding box
+    double diagonal = 0; ///< of the bounding box of the file's mesh
     std::vector<glm::dvec3> position, normal;
     std::vector<std::uint32_t> triangles; ///< three a triangle
     std::vector<double> distance;         ///< divided by the diagonal
@@ -47,26 +47,24 @@ private:
 };
 
 /// \param level  1 to 6: tess factor 2^level
-EqualParameterErrors equal_parameter_errors(Topology const& topology, PatchMesh const& patches,
-                                            FrameSettings settings, int level,
-                                            ThreadPool const& threads);
+EqualParameterErrors equal_parameter_errors(PatchMesh const& patches, FrameSettings settings,
+                                            int level, ThreadPool const& threads);
 
 /// What `share` of the weight, 0 to 1, stays at or below.
 double quantile(std::vector<double> const& values, std::vector<double> const& weights,
                 double share);
 
 struct SurfaceComparison {
-    double diagonal = 0; ///< of the control mesh's bounding box; distances are divided by it
+    double diagonal = 0; ///< of the bounding box of the file's mesh; distances are divided by it
     ErrorStatistics to_limit, from_limit; ///< closest point: scheme's samples, limit's samples
     ErrorStatistics normal_to_limit, normal_from_limit; ///< angles there, radians
     ErrorStatistics equal_position, equal_normal;       ///< by equal parameter; quads only
     ErrorStatistics equal_normal_grid;                  ///< see EqualParameterErrors::grid_weight
 };
 
-/// \param topology  of the mesh that `patches` was built from
 /// \param settings  machine and normals; tess factor and partitioning are the comparison's
 /// \param level     1 to 6. \cost 4^level points a face on both sides, and Embree's trees on them
-SurfaceComparison compare_with_limit(Topology const& topology, PatchMesh const& patches,
-                                     FrameSettings settings, int level, ThreadPool const& threads);
+SurfaceComparison compare_with_limit(PatchMesh const& patches, FrameSettings settings, int level,
+                                     ThreadPool const& threads);
 
 } // namespace tessemu

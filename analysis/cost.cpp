@@ -22,7 +22,7 @@ bool stays_on_chip(ResourceKind kind)
            kind == ResourceKind::Shared;
 }
 
-double memory_bytes(MachineModel const& m, FetchStatistics const& f)
+double memory_bytes(GpuModel const& m, FetchStatistics const& f)
 {
     if (stays_on_chip(f.kind)) return 0;
     auto const bytes = double(f.bytes), unique = double(f.unique_bytes);
@@ -31,7 +31,7 @@ double memory_bytes(MachineModel const& m, FetchStatistics const& f)
 }
 
 // A hull shader's groups do not span patches: lanes beyond the last control point idle.
-double idle_lanes(MachineModel const& m, PipelineStatistics const& p)
+double idle_lanes(GpuModel const& m, PipelineStatistics const& p)
 {
     double const patches = double(p.HSInvocations);
     if (patches == 0 || m.group_width <= 1) return 1;
@@ -62,7 +62,7 @@ std::string StageCost::bound() const
     return arithmetic > fetch ? "arithmetic" : "fetch";
 }
 
-DrawCost estimate_cost(MachineModel const& m, DrawStatistics const& s)
+DrawCost estimate_cost(GpuModel const& m, DrawStatistics const& s)
 {
     DrawCost out;
     PipelineStatistics const& p = s.pipeline;

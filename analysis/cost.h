@@ -1,9 +1,9 @@
-// From what a draw counted to the time it would take on a machine.
+// From what a draw counted to the time it would take on a GPU.
 //
 // A stage of shaders takes the time of its arithmetic and, after it, of its fetches, or that of its
-// memory traffic where that is longer; all such stages share the machine's processors, so their
-// times add up. Tessellator, set-up and rasterizer work beside them. The draw takes as long as the
-// slowest of these, and the machine's overhead.
+// memory traffic where that is longer; all such stages share the GPU's processors, so their times
+// add up. Tessellator, set-up and rasterizer work beside them. The draw takes as long as the
+// slowest of these, and the GPU's overhead.
 //
 // A fetch brings up to 16 bytes: a record counts in whole ones; scalars of a buffer, which
 // neighbouring invocations read one after the other, share them (LOOP09 4.3 packs its stencils in a
@@ -13,8 +13,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "io/machine_model.h"
 #include "emu/statistics.h"
+#include "io/gpu_model.h"
 
 namespace tessemu {
 
@@ -38,7 +38,7 @@ struct DrawCost {
 };
 
 /// \param statistics  of a draw, or of several added up
-DrawCost estimate_cost(MachineModel const& machine, DrawStatistics const& statistics);
+DrawCost estimate_cost(GpuModel const& gpu, DrawStatistics const& statistics);
 
 /// Fetches of up to 16 bytes.
 double fetch_count(FetchStatistics const& f);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/limit_surface.h"
 
-#include "pipeline/catmull_clark.h"
-#include "pipeline/loop09_constants.h"
+#include "pipeline/mesh/catmull_clark.h"
+#include "pipeline/mesh/limit_constants.h"
 
 #include <glm/geometric.hpp>
 

@@ -1,14 +1,14 @@
 // The Catmull-Clark limit surface on a dyadic grid: refinement in double, then limit masks.
 //
 // Limit position and tangent plane by the formulas of LOOP09 3.3 and 4.6, which are exact on a
-// refined mesh (sheet section 2). At boundary vertices with more than two faces the tangent plane
-// is that of the modified edge rule (sheet section 4) and the refinement is the plain one; both
+// refined mesh (docs/math/loop09.md, 2). At boundary vertices with more than two faces the tangent
+// plane is that of the modified edge rule (the same, 4) and the refinement is the plain one; both
 // agree everywhere else.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pipeline/topology.h"
+#include "pipeline/mesh/topology.h"
 
 #include <glm/vec3.hpp>
 

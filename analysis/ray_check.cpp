@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/ray_check.h"
 
+#include "analysis/embree_scene.h"
 #include "emu/error.h"
 
-#include <embree3/rtcore.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
@@ -55,23 +55,8 @@ private:
 class Scene {
 public:
     Scene(std::vector<glm::vec3> const& positions, std::vector<std::uint32_t> const& triangles)
-        : device_(rtcNewDevice(nullptr)),
-          scene_(rtcNewScene(device_.get()))
+        : scene_(std::span(positions), std::span(triangles), RTC_SCENE_FLAG_ROBUST)
     {
-        rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
-        RTCGeometry const g = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-        auto* const v = static_cast<float*>(rtcSetNewGeometryBuffer(
-            g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
-        for (std::size_t i = 0; i < positions.size(); ++i)
-            for (int k = 0; k < 3; ++k) v[3 * i + std::size_t(k)] = positions[i][k];
-        auto* const n = static_cast<std::uint32_t*>(
-            rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                    3 * sizeof(std::uint32_t), triangles.size() / 3));
-        std::copy(triangles.begin(), triangles.end(), n);
-        rtcCommitGeometry(g);
-        rtcAttachGeometry(scene_.get(), g);
-        rtcReleaseGeometry(g);
-        rtcCommitScene(scene_.get());
     }
 
     /// True if the ray meets a front first.
@@ -107,12 +92,7 @@ private:
         return hit;
     }
 
-    struct Release {
-        void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
-        void operator()(RTCScene s) const { rtcReleaseScene(s); }
-    };
-    std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
-    std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
+    EmbreeScene scene_;
 };
 
 struct Exact3 {

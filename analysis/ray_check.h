@@ -3,10 +3,9 @@
 // A ray from outside must meet a front before any back. Embree's own answers are not exact: it
 // loses rays that pass close to vertices, in robust mode too. So each ray that seems to slip
 // through is traced again over all triangles in 113-bit arithmetic, whose decisions at an edge are
-// the same for both of its triangles. Through a
-// closed surface as many fronts as backs are crossed on the whole way: where they do not balance
-// the ray found a hole. Where they do, Embree lost a hit, or the surface is folded over itself and
-// shows its inside.
+// the same for both of its triangles. Through a closed surface as many fronts as backs are crossed
+// on the whole way: where they do not balance the ray found a hole. Where they do, Embree lost a
+// hit, or the surface is folded over itself and shows its inside.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/watertight.h"
 
+#include "pipeline/mesh/patch_place.h"
+#include "shaders_cpp/domain_edges.h"
 #include "shaders_cpp/pixel/id_view.h"
 
 #include <glm/common.hpp>
@@ -23,20 +25,16 @@ namespace {
 
 constexpr std::size_t kPosition = 0, kNormal = 3, kDisplaced = 6;
 
-/// A point of a shared edge, or a corner (b = a), as one patch has it.
-struct Place {
-    std::uint32_t a, b, t; ///< t in 1/65536 from a, the smaller vertex
-    friend bool operator==(Place const&, Place const&) = default;
-};
-struct PlaceHash {
-    std::size_t operator()(Place const& p) const
+struct MeshPointHash {
+    std::size_t operator()(MeshPoint const& p) const
     {
-        return ((std::size_t(p.a) * 0x9e3779b97f4a7c15u) ^ (std::size_t(p.b) << 20) ^ p.t) *
+        return ((std::size_t(p.a) * 0x9e3779b97f4a7c15u) ^ (std::size_t(p.b) << 20) ^
+                (std::size_t(p.s) << 40) ^ p.t ^ (std::size_t(p.kind) << 62)) *
                0xbf58476d1ce4e5b9u;
     }
 };
 struct Seen {
-    std::uint32_t face;
+    std::uint32_t face, patch;
     std::array<std::uint32_t, 9> bits; ///< smooth position, normal, displaced position
     int patches = 1;                   ///< that have the point on their outline
 };
@@ -87,104 +85,127 @@ std::string hexadecimal(std::uint32_t bits)
     return text;
 }
 
-std::string place_in_words(CrackSite const& s)
+// Where a site lies: its patches and its point.
+void set_place(CrackSite& site, MeshPoint const& p, std::uint32_t face, std::uint32_t other)
 {
-    auto const number = [](std::uint32_t i) { return std::to_string(i + 1); };
-    std::string const patches =
-        "patches of faces " + number(s.face[0]) + " and " + number(s.face[1]);
-    if (s.vertex[0] == s.vertex[1]) return patches + ", corner at vertex " + number(s.vertex[0]);
-    return patches + ", edge " + number(s.vertex[0]) + "-" + number(s.vertex[1]) +
-           ", t = " + std::to_string(s.t) + "/65536";
+    site.face[0] = face;
+    site.face[1] = other;
+    if (p.kind != MeshPoint::Kind::Face)
+        site.vertex[0] = p.a, site.vertex[1] = p.kind == MeshPoint::Kind::Edge ? p.b : p.a;
+    site.t = p.kind == MeshPoint::Kind::Edge ? p.t >> 9 : 0;
+    site.text = "patches of faces " + std::to_string(face + 1) + " and " +
+                std::to_string(other + 1) + ", " + in_words(p);
 }
 
 // The whole surface, and what meets at its shared edges.
 class Surface {
 public:
-    Surface(Topology const& topology, PatchMesh const& patches, FrameSettings const& frame,
-            bool keep_triangles, ThreadPool const& threads)
-        : topology_(topology),
-          displaced_(frame.displacement != nullptr)
+    Surface(PatchMesh const& patches, FrameSettings const& frame, bool keep_triangles,
+            ThreadPool const& threads)
+        : mesh_(patches.mesh().base())
     {
-        visit_surface(patches, frame, threads, [&](DrawPass const& pass, ShadedPatch const& patch) {
-            add(pass, patch, keep_triangles);
-        });
+        visit_surface(patches, frame, threads,
+                      [&](SurfacePatch const& patch) { add(patch, keep_triangles); });
     }
 
-    std::unordered_map<Place, std::vector<Seen>, PlaceHash> const& places() const
+    using Points = std::unordered_map<MeshPoint, std::vector<Seen>, MeshPointHash>;
+    Points const& points() const { return points_; }
+    /// A patch's edge on a line; a point of a patch on a line.
+    struct Interval {
+        std::uint32_t low, high, patch;
+    };
+    struct OnLine {
+        std::uint32_t t, patch;
+        MeshPoint point;
+    };
+    struct Line {
+        std::vector<Interval> intervals;
+        std::vector<OnLine> points;
+    };
+    std::map<MeshLine, Line> const& lines() const { return lines_; }
+    std::uint32_t face_of_patch(std::uint32_t patch) const { return face_of_patch_[patch]; }
+
+    /// Pieces of lines that one patch alone has.
+    std::size_t open_edges() const
     {
-        return places_;
-    }
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> const&
-    edges() const
-    {
-        return edges_;
+        std::size_t open = 0;
+        for (auto const& [name, line] : lines_) {
+            std::vector<std::uint32_t> ends;
+            for (Interval const& i : line.intervals) ends.insert(ends.end(), {i.low, i.high});
+            std::sort(ends.begin(), ends.end());
+            ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+            for (std::size_t k = 0; k + 1 < ends.size(); ++k)
+                open += std::count_if(line.intervals.begin(), line.intervals.end(),
+                                      [&](Interval const& i) {
+                                          return i.low <= ends[k] && i.high >= ends[k + 1];
+                                      }) == 1;
+        }
+        return open;
     }
     RayMesh const& rays() const { return rays_; }
     std::vector<std::uint32_t> const& face_of_triangle() const { return face_of_triangle_; }
     std::vector<std::uint32_t> const& face_of_target() const { return face_of_target_; }
 
 private:
-    void add(DrawPass const& pass, ShadedPatch const& patch, bool keep_triangles)
+    void add(SurfacePatch const& patch, bool keep_triangles)
     {
-        PatchOrigin const& origin = pass.patches[patch.primitive_id];
-        auto const face = topology_.mesh().face(origin.face);
-        int const n = origin.sides;
-        auto const vertex = [&](int i) { return face[std::size_t((i + origin.rotation) % n)]; };
-        for (int k = 0; k < n; ++k)
-            edges_[std::minmax(vertex(k), vertex(k + 1))].push_back(origin.face);
-        TessellatedPatch const& tess = patch.points->patch;
+        PatchPlace const& place = patch.place();
+        auto const number = std::uint32_t(face_of_patch_.size());
+        face_of_patch_.push_back(place.face);
+        int const n = place.sides;
+        MeshInterval edge[4];
+        for (int k = 0; k < n; ++k) {
+            edge[k] = mesh_interval(mesh_, place, k);
+            lines_[edge[k].line].intervals.push_back(
+                {std::min(edge[k].from, edge[k].to), std::max(edge[k].from, edge[k].to), number});
+        }
+        TessellatedPatch const& tess = patch.domain().patch;
         Outline& outline = outlines_[tess.indices];
         if (outline.on.empty()) outline = outline_of(tess);
-        auto const component = [&](std::size_t k, std::size_t i) {
-            return patch.outputs[k * patch.stride + i];
-        };
         std::size_t const first_point = rays_.positions.size();
         if (keep_triangles) {
             auto const first = std::uint32_t(first_point);
             for (std::size_t i = 0; i < tess.points(); ++i)
-                rays_.positions.emplace_back(component(0, i), component(1, i), component(2, i));
+                rays_.positions.push_back(patch.vertex(i).position);
             rays_.control.insert(rays_.control.end(),
                                  rays_.positions.begin() + std::ptrdiff_t(first),
                                  rays_.positions.end());
             for (std::uint32_t i : tess.indices) rays_.triangles.push_back(first + i);
-            face_of_triangle_.insert(face_of_triangle_.end(), tess.indices.size() / 3, origin.face);
+            face_of_triangle_.insert(face_of_triangle_.end(), tess.indices.size() / 3, place.face);
             for (std::uint32_t i : outline.segments) rays_.targets.push_back(first + i);
-            face_of_target_.insert(face_of_target_.end(), outline.segments.size() / 2, origin.face);
+            face_of_target_.insert(face_of_target_.end(), outline.segments.size() / 2, place.face);
         }
         for (std::size_t i = 0; i < tess.points(); ++i) {
             if (!outline.on[i]) continue;
-            std::uint32_t const u = tess.u[i], v = tess.v[i], one = kFixedOne;
-            std::uint32_t const w = one - u - v;
-            bool const quad = n == 4;
-            bool const on[4] = {quad ? v == 0 : w == 0, quad ? u == one : u == 0,
-                                quad ? v == one : v == 0, quad && u == 0};
-            std::uint32_t const t[4] = {quad ? u : v, quad ? v : w, quad ? one - u : u, one - v};
-            std::array<std::uint32_t, 9> bits;
-            // Smooth position: behind the normal where the surface is displaced.
-            std::size_t const from[9] = {
-                displaced_ ? 7u : 0u, displaced_ ? 8u : 1u, displaced_ ? 9u : 2u, 4, 5, 6, 0, 1, 2};
-            for (std::size_t c = 0; c < 9; ++c)
-                bits[c] = std::bit_cast<std::uint32_t>(component(from[c], i));
+            float const u = patch.domain().u[i], v = patch.domain().v[i];
+            DomainEdges<4, float> const at = domain_edges<float>(n, u, v, 1 - u - v, 1 - u, 1 - v);
+            MeshPoint const point = mesh_point(mesh_, place, tess.u[i], tess.v[i]);
+            bool on_edge = false;
             for (int k = 0; k < n; ++k) {
-                if (!on[k]) continue;
-                std::uint32_t a = vertex(k), b = vertex(k + 1), at = t[k];
-                if (at == one) continue; // the next edge's first corner
-                if (at == 0) {
-                    b = a;
-                } else if (a > b) {
-                    std::swap(a, b);
-                    at = one - at;
-                }
-                glm::vec3 const first = record({a, b, at}, {origin.face, bits, 1});
-                if (keep_triangles) rays_.control[first_point + i] = first;
+                if (!at.on[k]) continue;
+                on_edge = true;
+                // Exact: a multiple of 2^-16.
+                lines_[edge[k].line].points.push_back(
+                    {edge[k].at(std::uint32_t(at.t[k] * 65536)), number, point});
             }
+            if (!on_edge) continue;
+            SurfaceVertex const vertex = patch.vertex(i);
+            Seen seen{place.face, number, {}, 1};
+            for (int c = 0; c < 3; ++c) {
+                auto const bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
+                seen.bits[kPosition + std::size_t(c)] = bits(vertex.smooth[c]);
+                seen.bits[kNormal + std::size_t(c)] = bits(vertex.normal[c]);
+                seen.bits[kDisplaced + std::size_t(c)] = bits(vertex.position[c]);
+            }
+            glm::vec3 const first = record(point, seen);
+            if (keep_triangles) rays_.control[first_point + i] = first;
         }
     }
 
     // Patches whose values are the same share an entry. Gives the point as the first patch has it.
-    glm::vec3 record(Place const& place, Seen const& seen)
+    glm::vec3 record(MeshPoint const& point, Seen const& seen)
     {
-        std::vector<Seen>& all = places_[place];
+        std::vector<Seen>& all = points_[point];
         auto const same = std::find_if(all.begin(), all.end(),
                                        [&](Seen const& s) { return s.bits == seen.bits; });
         if (same != all.end())
@@ -194,10 +215,10 @@ private:
         return place_of(all.front());
     }
 
-    Topology const& topology_;
-    bool displaced_;
-    std::unordered_map<Place, std::vector<Seen>, PlaceHash> places_;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edges_;
+    ControlMesh const& mesh_;
+    Points points_;
+    std::map<MeshLine, Line> lines_;
+    std::vector<std::uint32_t> face_of_patch_;
     std::map<std::vector<std::uint32_t>, Outline> outlines_;
     RayMesh rays_;
     std::vector<std::uint32_t> face_of_triangle_, face_of_target_;
@@ -205,19 +226,16 @@ private:
 
 class Checker {
 public:
-    Checker(Topology const& topology, PatchMesh const& patches, WatertightSettings const& settings,
-            ThreadPool const& threads)
+    Checker(PatchMesh const& patches, WatertightSettings const& settings, ThreadPool const& threads)
         : patches_(patches),
           s_(settings),
           threads_(threads),
-          surface_(topology, patches, settings.frame, settings.rays > 0, threads)
+          surface_(patches, settings.frame, settings.rays > 0, threads),
+          open_edges_(surface_.open_edges())
     {
-        for (auto const& [edge, faces] : surface_.edges())
-            if (faces.size() == 1) ++open_edges_;
-        for (auto const& [place, seen] : surface_.places()) order_.push_back(&place);
-        std::sort(order_.begin(), order_.end(), [](Place const* x, Place const* y) {
-            return std::tuple(x->a, x->b, x->t) < std::tuple(y->a, y->b, y->t);
-        });
+        for (auto const& [point, seen] : surface_.points()) order_.push_back(&point);
+        std::sort(order_.begin(), order_.end(),
+                  [](MeshPoint const* x, MeshPoint const* y) { return *x < *y; });
     }
 
     std::vector<CheckedVerdict> run()
@@ -245,25 +263,38 @@ private:
         if (v.sites.size() < s_.list) v.sites.push_back(std::move(site));
     }
 
+    // A point inside two patches' edges must be a point of both: otherwise one passes it by.
     CheckedVerdict topology() const
     {
         CheckedVerdict v{"topology", Verdict::Pass, "", 0, 0, {}};
-        for (Place const* p : order_) {
-            if (p->a == p->b) continue;
-            auto const& faces = surface_.edges().at({p->a, p->b});
-            if (faces.size() != 2) continue;
-            std::vector<Seen> const& seen = surface_.places().at(*p);
-            int patches = 0;
-            for (Seen const& s : seen) patches += s.patches;
-            ++v.checked;
-            if (patches == 2) continue;
-            CrackSite site;
-            site.face[0] = seen[0].face;
-            site.face[1] = faces[0] == seen[0].face ? faces[1] : faces[0];
-            site.vertex[0] = p->a, site.vertex[1] = p->b, site.t = p->t;
-            site.place = place_of(seen[0]);
-            site.text = place_in_words(site) + ": only the first has the point";
-            add(v, site);
+        for (auto const& [name, line] : surface_.lines()) {
+            std::vector<Surface::OnLine> at = line.points;
+            std::stable_sort(at.begin(), at.end(), [](auto const& x, auto const& y) {
+                return std::pair(x.t, x.patch) < std::pair(y.t, y.patch);
+            });
+            for (std::size_t i = 0, end = 0; i < at.size(); i = end) {
+                while (end < at.size() && at[end].t == at[i].t) ++end;
+                std::vector<std::uint32_t> inside; // patches whose edge has the point inside
+                for (Surface::Interval const& interval : line.intervals)
+                    if (interval.low < at[i].t && at[i].t < interval.high)
+                        inside.push_back(interval.patch);
+                if (inside.empty()) continue; // where edges end
+                bool const alone = inside.size() == 1 && end - i == 1;
+                if (alone) continue; // the boundary
+                ++v.checked;
+                for (std::uint32_t patch : inside) {
+                    auto const first = at.begin() + std::ptrdiff_t(i),
+                               last = at.begin() + std::ptrdiff_t(end);
+                    if (std::any_of(first, last, [&](auto const& p) { return p.patch == patch; }))
+                        continue;
+                    CrackSite site;
+                    set_place(site, at[i].point, surface_.face_of_patch(at[i].patch),
+                              surface_.face_of_patch(patch));
+                    site.place = place_of(surface_.points().at(at[i].point)[0]);
+                    site.text += ": only the first has the point";
+                    add(v, site);
+                }
+            }
         }
         return v;
     }
@@ -271,8 +302,8 @@ private:
     CheckedVerdict equal_bits(char const* name, std::size_t first) const
     {
         CheckedVerdict v{name, Verdict::Pass, "", 0, 0, {}};
-        for (Place const* p : order_) {
-            std::vector<Seen> const& seen = surface_.places().at(*p);
+        for (MeshPoint const* p : order_) {
+            std::vector<Seen> const& seen = surface_.points().at(*p);
             int patches = 0;
             for (Seen const& s : seen) patches += s.patches;
             if (patches < 2) continue;
@@ -282,15 +313,14 @@ private:
                 while (c < first + 3 && seen[i].bits[c] == seen[0].bits[c]) ++c;
                 if (c == first + 3) continue;
                 CrackSite site;
-                site.face[0] = seen[0].face, site.face[1] = seen[i].face;
-                site.vertex[0] = p->a, site.vertex[1] = p->b, site.t = p->t;
+                set_place(site, *p, seen[0].face, seen[i].face);
                 site.component = int(c - first);
                 site.bits[0] = seen[0].bits[c], site.bits[1] = seen[i].bits[c];
                 site.ulp = ulp_distance(site.bits[0], site.bits[1]);
                 site.place = place_of(seen[0]);
-                site.text = place_in_words(site) + ": " + "xyz"[site.component] + " is " +
-                            hexadecimal(site.bits[0]) + " and " + hexadecimal(site.bits[1]) + ", " +
-                            std::to_string(site.ulp) + " ulp apart";
+                site.text += std::string(": ") + "xyz"[site.component] + " is " +
+                             hexadecimal(site.bits[0]) + " and " + hexadecimal(site.bits[1]) +
+                             ", " + std::to_string(site.ulp) + " ulp apart";
                 add(v, site);
                 break; // one failure a place
             }
@@ -313,18 +343,15 @@ private:
                 "the surface is open: " + std::to_string(open_edges_) + " edges have one patch";
             return v;
         }
-        PassSettings plain = pass_settings(s_.frame);
-        plain.view_projection =
-            view_projection(s_.frame.camera, float(s_.frame.width) / float(s_.frame.height));
-        count_hits(plain, s_.frame.width, s_.frame.height, "", v);
-        PassSettings rounded = plain;
-        rounded.view_projection = view_projection(s_.frame.camera, 1);
-        rounded.lattice = {kLattice, kLattice}; // half pixels
+        count_hits(seen_surface(s_.frame), s_.frame.width, s_.frame.height, "", v);
+        SurfaceSettings rounded = surface_settings(s_.frame);
+        rounded.finish.view_projection = view_projection(s_.frame.camera, 1);
+        rounded.finish.lattice = {kLattice, kLattice}; // half pixels
         count_hits(rounded, kLattice, kLattice, ", vertices rounded to half pixels", v);
         return v;
     }
 
-    void count_hits(PassSettings const& settings, int width, int height, char const* what,
+    void count_hits(SurfaceSettings const& surface, int width, int height, char const* what,
                     CheckedVerdict& v) const
     {
         CoverageCounts counts(width, height);
@@ -334,9 +361,7 @@ private:
         raster.rasterizer.front_counter_clockwise = true;
         raster.rasterizer.depth_clip_enable = false; // near and far plane hide nothing
         raster.coverage = &counts;
-        raster.inclusive_edges = s_.frame.mistake.kind == Mistake::TopLeft;
-        for (DrawPass const& pass : frame_passes(patches_, s_.frame, settings))
-            draw_pass(pass, &raster, {}, threads_);
+        run_commands(frame_commands(patches_, s_.frame, surface), threads_, {&raster});
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x) {
                 std::size_t const i = counts.index(x, y, 0);
@@ -390,7 +415,7 @@ private:
         std::uint64_t const confirmed = v.failures;
         std::string pictures;
         // Instances number their triangles, and points moved by parity are in the picture alone.
-        if (!s_.frame.direct3d10 && s_.frame.parity == 0) {
+        if (!s_.frame.direct3d10 && s_.frame.finish.parity == 0) {
             VisibilityCheck const c =
                 check_visibility(surface_.rays(), surface_.face_of_triangle(), visible_faces(),
                                  s_.frame.camera, s_.frame.width, s_.frame.height, threads_);
@@ -427,22 +452,20 @@ private:
         depth.clear(1, 0, threads_);
         RasterTarget raster{{&color}, &depth, {{0, 0, float(width), float(height), 0, 1}}};
         raster.rasterizer.cull = CullMode::None;
-        PassSettings settings = pass_settings(s_.frame);
-        settings.view_projection = view_projection(s_.frame.camera, float(width) / float(height));
-        float number = 0;
-        settings.pixel_shader = [&](PatchKind const&) {
-            return make_pixel_program(IdPixelShader{number++}, s_.frame.machine);
-        };
-        std::vector<DrawPass> const passes = frame_passes(patches_, s_.frame, settings);
-        for (DrawPass const& pass : passes) draw_pass(pass, &raster, {}, threads_);
+        CommandList list = frame_commands(patches_, s_.frame, seen_surface(s_.frame));
+        std::vector<std::span<PatchPlace const>> draws;
+        list.for_each_surface_draw([&](Draw& d) {
+            d.pipeline.pixel_shader =
+                bind_pixel_shader(IdPixelShader{float(draws.size())}, s_.frame.machine);
+            draws.push_back(d.patches);
+        });
+        run_commands(list, threads_, {&raster});
         std::vector<std::int64_t> out;
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x) {
                 auto const c = color.load(x, y);
                 out.push_back(
-                    c[0] < 0
-                        ? -1
-                        : std::int64_t(passes[std::size_t(c[1])].patches[std::size_t(c[0])].face));
+                    c[0] < 0 ? -1 : std::int64_t(draws[std::size_t(c[1])][std::size_t(c[0])].face));
             }
         return out;
     }
@@ -452,33 +475,17 @@ private:
     WatertightSettings const& s_;
     ThreadPool const& threads_;
     Surface surface_;
-    std::size_t open_edges_ = 0;
-    std::vector<Place const*> order_;
+    std::size_t open_edges_;
+    std::vector<MeshPoint const*> order_;
 };
 
 } // namespace
 
-PlantedMistake plant_mistake(Topology const& topology, Mistake kind)
-{
-    ControlMesh const& mesh = topology.mesh();
-    for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
-        bool shared = true;
-        for (HalfEdge h = mesh.face_start[f]; h < mesh.face_start[f + 1]; ++h)
-            shared = shared && topology.twin(h) != Topology::kNone;
-        if (shared) return {kind, f};
-    }
-    return {kind, 0};
-}
-
-std::vector<CheckedVerdict> check_watertight(Topology const& topology, PatchMesh const& patches,
+std::vector<CheckedVerdict> check_watertight(PatchMesh const& patches,
                                              WatertightSettings const& settings,
                                              ThreadPool const& threads)
 {
-    WatertightSettings s = settings;
-    // Mirror pairs are symmetric until products are fused.
-    if (s.frame.mistake.kind == Mistake::Contraction)
-        s.frame.machine.contraction = Contraction::All;
-    return Checker(topology, patches, s, threads).run();
+    return Checker(patches, settings, threads).run();
 }
 
 bool all_hold(std::vector<CheckedVerdict> const& verdicts)

@@ -8,8 +8,7 @@
 //              depth: in a picture, and in one whose vertices are rounded to half pixels, where
 //              edges run through samples
 //   raycast    rays from outside meet a front first; Embree traces, 113-bit arithmetic decides; and
-//   the
-//              picture shows the patches that Embree sees, or a reason why not
+//              the picture shows the patches that Embree sees, or a reason why not
 //
 // A verdict that does not apply is skipped, with the reason. docs/watertight.md explains.
 //
@@ -27,8 +26,9 @@ std::string_view name_of(Verdict verdict);
 
 /// What a verdict fails on.
 struct CrackSite {
-    std::uint32_t face[2] = {0, 0};   ///< the patches, from 0; equal for a pixel or a ray
-    std::uint32_t vertex[2] = {0, 0}; ///< the edge, from 0; equal for a corner
+    std::uint32_t face[2] = {0, 0};   ///< of the file, from 0, whose patches they are; equal for a
+                                      ///< pixel, a ray or two patches of one face
+    std::uint32_t vertex[2] = {0, 0}; ///< the edge, from 0; equal for a corner and inside a face
     std::uint32_t t = 0;              ///< along it, in 1/65536 from vertex[0]
     int component = -1;               ///< x, y, z; -1 where no value differs
     std::uint32_t bits[2] = {0, 0};   ///< both values
@@ -48,23 +48,18 @@ struct CheckedVerdict {
     std::vector<CrackSite> sites; ///< the first of them
 };
 
-/// A mistake in the first patch whose edges all have another patch beyond.
-PlantedMistake plant_mistake(Topology const& topology, Mistake kind);
-
 struct WatertightSettings {
-    FrameSettings frame; ///< its camera, size and factors; contraction, displacement, pose, mistake
-    std::uint64_t rays = 200000;                            ///< of each kind; 0: no raycast
-    std::size_t list = 100;                                 ///< sites a verdict lists at most
-    std::uint32_t seed = 1;                                 ///< of the rays
+    FrameSettings frame;         ///< its camera, size and factors; contraction, displacement, pose
+    std::uint64_t rays = 200000; ///< of each kind; 0: no raycast
+    std::size_t list = 100;      ///< sites a verdict lists at most
+    std::uint32_t seed = 1;      ///< of the rays
     std::function<void(std::size_t, std::size_t)> progress; ///< steps done, of all; may be empty
 };
 
 /// The verdicts in the order above.
 ///
-/// \param topology  of the mesh that `patches` was built from
-/// \cost            a tessellation for the edges, two draws, and the whole surface in memory for
-///                  the rays
-std::vector<CheckedVerdict> check_watertight(Topology const& topology, PatchMesh const& patches,
+/// \cost  a tessellation for the edges, two draws, and the whole surface in memory for the rays
+std::vector<CheckedVerdict> check_watertight(PatchMesh const& patches,
                                              WatertightSettings const& settings,
                                              ThreadPool const& threads);
 

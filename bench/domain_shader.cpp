@@ -1,8 +1,8 @@
 // Gregory evaluation with unit normals, lanes across the points of a patch, one thread.
 //
 // Counters: evaluations per second, multiplications and all operations per point. The limit to
-// compare with is the hand-written kernel "fly cached 1 thr" of ../shared/peers/bound, built with
-// contraction off for the same instruction set; scripts/bench.sh runs both in turn.
+// compare with is a hand-written kernel, built with contraction off for the same instruction set;
+// scripts/bench.sh runs both in turn where the kernel is at hand.
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "shaders_cpp/gregory/domain_shaders.h"
@@ -64,31 +64,38 @@ template <class Shader, class T, class Check = Lanes<4>>
 void run(benchmark::State& state, int per_patch, Contraction contraction = Contraction::None)
 {
     Workload w(int(state.range(0)), per_patch);
-    DomainProgramOn<Shader, T> const program(Shader{}, SiteState{contraction, 0, 0, 0});
+    DomainProgramOn<Shader, T> const program;
+    ShaderBinding const binding(Shader{}, SiteState{contraction, 0, 0, 0});
     StageBuffers const buffers({});
     StageCounters counters;
     std::uint64_t evaluations = 0;
+    auto const batch = [&](std::size_t p, std::vector<float>& out) {
+        return DomainBatch{w.control_points.data() + p * std::size_t(per_patch) * 3,
+                           per_patch,
+                           w.registers.data(),
+                           24,
+                           std::int32_t(p),
+                           w.u.data(),
+                           w.v.data(),
+                           w.points,
+                           out.data(),
+                           w.padded};
+    };
     for (auto _ : state) {
-        StageScope const scope(counters, buffers, program.sites());
+        StageScope const scope(counters, buffers, binding.sites());
         for (std::size_t p = 0; p < Workload::kPatches; ++p) {
-            program.run({w.control_points.data() + p * std::size_t(per_patch) * 3,
-                         w.registers.data(), std::int32_t(p), w.u.data(), w.v.data(), w.points,
-                         w.out.data(), w.padded},
-                        24, counters);
+            program.run(binding, batch(p, w.out), counters);
             benchmark::ClobberMemory();
         }
         evaluations += Workload::kPatches * w.points;
     }
     // The last patch against the scalar machine, bit for bit.
     std::vector<float> check(w.padded * 7);
-    DomainProgramOn<Shader, Check> const narrow(Shader{}, SiteState{contraction, 0, 0, 0});
+    DomainProgramOn<Shader, Check> const narrow;
     StageCounters ignored;
     {
-        StageScope const scope(ignored, buffers, narrow.sites());
-        narrow.run({w.control_points.data() + (Workload::kPatches - 1) * std::size_t(per_patch) * 3,
-                    w.registers.data(), std::int32_t(Workload::kPatches - 1), w.u.data(),
-                    w.v.data(), w.points, check.data(), w.padded},
-                   24, ignored);
+        StageScope const scope(ignored, buffers, binding.sites());
+        narrow.run(binding, batch(Workload::kPatches - 1, check), ignored);
     }
     for (std::size_t k = 0; k < 6; ++k)
         for (std::size_t i = 0; i < w.points; ++i)

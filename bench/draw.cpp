@@ -13,7 +13,7 @@ void whole_frame(benchmark::State& state)
     BenchScene const scene(float(state.range(0)));
     ThreadPool const threads(int(state.range(1)));
     Frame frame(scene.settings);
-    for (auto _ : state) draw_frame(*scene.patches, scene.settings, threads, frame);
+    for (auto _ : state) draw_frame(scene.patches(), scene.settings, threads, frame);
     DrawStatistics const& statistics = frame.statistics;
     PipelineStatistics const& p = statistics.pipeline;
     if (p.PSInvocations == 0) state.SkipWithError("nothing was drawn");
@@ -39,7 +39,8 @@ void geometry_only(benchmark::State& state)
     BenchScene const scene(float(state.range(0)));
     ThreadPool const threads(1);
     DrawStatistics statistics;
-    for (auto _ : state) statistics = visit_surface(*scene.patches, scene.settings, threads, {});
+    for (auto _ : state)
+        statistics = visit_surface(scene.patches(), scene.settings, threads, {}).total;
     if (statistics.pipeline.DSInvocations == 0) state.SkipWithError("nothing was evaluated");
     state.counters["Mpoint/s"] =
         benchmark::Counter(double(statistics.pipeline.DSInvocations) * 1e-6,

@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/model.h"
 #include "pipeline/frame.h"
+#include "pipeline/schemes/scheme.h"
 
 #include <fmt/core.h>
 
@@ -37,14 +38,12 @@ int main(int argc, char** argv)
         fmt::print("{} is not there\n", model);
         return 0;
     }
-    Technique const& technique = find_technique("gregory-stencil");
-    PreparedMesh const mesh = prepare_mesh(load_model(model).mesh, technique);
-    auto const patches = technique.build(*mesh.topology, {});
+    SchemeOnMesh const m = build_scheme(find_scheme("gregory-stencil"), load_model(model).mesh);
     FrameSettings settings;
     settings.tess_factor = factor;
-    settings.camera = frame_points(mesh.mesh->positions, {0.5f, 0.5f, 1}, 1);
+    settings.camera = frame_points(m.mesh->mesh().positions, {0.5f, 0.5f, 1}, 1);
     auto const start = std::chrono::steady_clock::now();
-    Frame const frame = draw_frame(*patches, settings, ThreadPool());
+    Frame const frame = draw_frame(*m.patches, settings, ThreadPool());
     double const seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     fmt::print("{} patches, {} domain points, {:.2f} s, peak {:.0f} MB\n",

@@ -4,6 +4,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/obj_reader.h"
 #include "pipeline/frame.h"
+#include "pipeline/mesh/catmull_clark.h"
+#include "pipeline/schemes/scheme.h"
 
 #include <benchmark/benchmark.h>
 
@@ -40,7 +42,8 @@ void load_classify_draw(benchmark::State& state)
 {
     std::string const text = torus(int(state.range(0)));
     double const faces = double(state.range(0)) * double(state.range(0));
-    Technique const& technique = find_technique("gregory-stencil");
+    Scheme const& scheme = find_scheme("gregory-stencil");
+    Parameters const parameters = resolve_parameters(scheme.info(), {});
     ThreadPool const threads;
     using Clock = std::chrono::steady_clock;
     double load = 0, topology = 0, build = 0, drawing = 0;
@@ -51,12 +54,13 @@ void load_classify_draw(benchmark::State& state)
         auto t = Clock::now();
         ObjFile file = read_obj(text, "torus");
         load += since(t), t = Clock::now();
-        PreparedMesh const mesh = prepare_mesh(std::move(file.mesh), technique);
+        auto const mesh =
+            std::make_shared<RefinedMesh const>(std::move(file.mesh), 0, catmull_clark_step);
         topology += since(t), t = Clock::now();
-        auto const patches = technique.build(*mesh.topology, {});
+        auto const patches = scheme.build(mesh, parameters);
         build += since(t), t = Clock::now();
         FrameSettings s;
-        s.camera = frame_points(mesh.mesh->positions, {0.3f, 0.4f, 1}, 1);
+        s.camera = frame_points(mesh->mesh().positions, {0.3f, 0.4f, 1}, 1);
         Frame const frame = draw_frame(*patches, s, threads);
         drawing += since(t);
         if (double(frame.statistics.pipeline.HSInvocations) != faces)

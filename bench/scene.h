@@ -6,6 +6,7 @@
 
 #include "io/model.h"
 #include "pipeline/frame.h"
+#include "pipeline/schemes/scheme.h"
 
 #include <glm/geometric.hpp>
 
@@ -15,21 +16,21 @@
 namespace tessemu {
 
 struct BenchScene {
-    PreparedMesh mesh;
-    std::unique_ptr<PatchMesh> patches;
+    SchemeOnMesh scheme;
     FrameSettings settings;
+
+    ControlMesh const& mesh() const { return scheme.mesh->mesh(); }
+    PatchMesh const& patches() const { return *scheme.patches; }
 
     explicit BenchScene(float tess_factor = 1)
     {
         std::string const bigguy = std::string(TESSEMU_SHARED_DIR) + "/models/bigguy.obj";
-        Technique const& technique = find_technique("gregory-stencil");
-        mesh = prepare_mesh(load_model(std::filesystem::exists(bigguy) ? bigguy : "jug").mesh,
-                            technique);
-        patches = technique.build(*mesh.topology, {});
+        scheme = build_scheme(find_scheme("gregory-stencil"),
+                              load_model(std::filesystem::exists(bigguy) ? bigguy : "jug").mesh);
         settings.tess_factor = tess_factor;
 
         // The bounding sphere fills the picture at a field of view of 0.6.
-        auto const& points = mesh.mesh->positions;
+        auto const& points = mesh().positions;
         glm::vec3 low(1e30f), high(-1e30f);
         for (glm::vec3 const& p : points) low = glm::min(low, p), high = glm::max(high, p);
         glm::vec3 const centre = 0.5f * (low + high);

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/job.h"
 
+#include "analysis/compare.h"
 #include "io/atomic_file.h"
+#include "io/image_reader.h"
 #include "io/sha256.h"
 
 #include <fmt/format.h>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <cmath>
 #include <cstdio>
 
 #include <unistd.h>
@@ -41,13 +47,10 @@ void write_result(std::string const& path, std::string const& json)
         write_file(path, json);
 }
 
-void build(Model& model, Technique const& technique,
-           std::map<std::string, double> const& parameters, PreparedMesh& prepared,
-           std::unique_ptr<PatchMesh>& patches)
+SchemeOnMesh build(Model model, ModelRequest const& o)
 {
     try {
-        prepared = prepare_mesh(std::move(model.mesh), technique);
-        patches = technique.build(*prepared.topology, parameters);
+        return build_scheme(*o.scheme, std::move(model.mesh), o.build);
     } catch (MeshError const& e) {
         throw FormatError(model.path, model.line_of_face(e.face), e.what());
     } catch (LimitError const& e) {
@@ -55,70 +58,165 @@ void build(Model& model, Technique const& technique,
     }
 }
 
-Job prepare(Options const& o, std::string const& verb)
+Config config_of(ModelRequest const& o, Parameters const& parameters)
+{
+    SchemeInfo const info = o.scheme->info();
+    Config out{{"scheme", info.name}, {"subdivide", std::int64_t(o.build.subdivide)}};
+    for (SchemeParameter const& p : info.parameters)
+        std::visit([&](auto const& value) { out.emplace_back(p.name, value); },
+                   parameters.values().at(p.name));
+    return out;
+}
+
+namespace {
+
+Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb)
 {
     Job job;
-    FrameSettings& f = job.frame;
-    auto const partitioning = partitioning_from_name(o.partitioning);
-    if (!partitioning)
-        throw Error("--partitioning is '" + o.partitioning +
-                    "', it must be integer, pow2, fractional_odd or fractional_even");
-    if (!(o.tess > 0 && o.tess <= kMaxTessFactor))
-        throw Error(
-            fmt::format("--tess is {}, it must be above 0 and at most {}", o.tess, kMaxTessFactor));
-    if (o.normals != "frozen" && o.normals != "true")
-        throw Error("--normals is '" + o.normals + "', it must be frozen or true");
-    f.partitioning = *partitioning;
-    f.tess_factor = float(o.tess);
-    f.true_normals = o.normals == "true";
-    f.machine = parse_machine(o);
-    f.vertex_cache = vertex_cache_from_name(o.vertex_cache);
-    Technique const& technique = find_technique(o.scheme);
-    auto const parameters = parse_parameters(o);
-
+    job.frame.machine = shading.machine();
+    job.frame.true_normals = shading.true_normals;
+    job.poses.emplace_back();
     Stopwatch const load_clock;
     Model model = load_model(o.model);
     job.load_seconds = load_clock.seconds();
+    job.header.verb = verb;
+    job.header.inputs = {{model.name, model.sha256}};
+    job.header.warnings = std::move(model.warnings);
     Stopwatch const build_clock;
-    build(model, technique, parameters, job.prepared, job.patches);
+    job.surface = build(std::move(model), o);
     job.build_seconds = build_clock.seconds();
-    f.displacement = parse_displacement(o, *job.prepared.topology);
-    f.direct3d10 = o.direct3d == 10;
-    job.poses = parse_frames(o, *job.prepared.mesh);
+    auto const& more = job.surface.warnings;
+    job.header.warnings.insert(job.header.warnings.end(), more.begin(), more.end());
+    job.header.config = config_of(o, job.surface.parameters);
+    return job;
+}
+
+void add_config(Config& c, ShadingRequest const& o)
+{
+    c.emplace_back("normals", std::string(o.true_normals ? "true" : "frozen"));
+    c.emplace_back("contraction", name_of(o.products));
+}
+
+// Warnings of the file carry its path; a result must not.
+void report_warnings(ReportHeader& header, std::string const& path)
+{
+    print_warnings(header.warnings);
+    std::string const prefix = path.substr(0, path.find_last_of('/') + 1);
+    for (std::string& w : header.warnings)
+        if (!prefix.empty() && w.starts_with(prefix)) w.erase(0, prefix.size());
+}
+
+float diagonal_of(ControlMesh const& mesh)
+{
+    glm::vec3 low(INFINITY), high(-INFINITY);
+    for (glm::vec3 const& p : mesh.positions) low = min(low, p), high = max(high, p);
+    return glm::length(high - low);
+}
+
+std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o,
+                                                      RefinedMesh const& mesh)
+{
+    using Kind = DisplaceRequest::Heights::Kind;
+    auto const& [kind, path] = o.displace.heights;
+    if (kind == Kind::None) return {};
+    float const diagonal = diagonal_of(mesh.reference());
+    float const scale = o.displace.scale ? float(*o.displace.scale) : 0.01f * diagonal;
+    if (kind == Kind::Studs)
+        return std::make_shared<Displacement>(Displacement::studs(diagonal / 16, scale));
+    HeightImage const image = read_height_image(path);
+    try {
+        return std::make_shared<Displacement>(mesh.base_topology(), image, scale);
+    } catch (Error const& e) {
+        throw Error(o.model.model + ": " + e.what());
+    }
+}
+
+std::vector<FramePose> make_poses(AnimateRequest const& o, ControlMesh const& mesh)
+{
+    if (o.motion == AnimateRequest::Motion::None) return {{}};
+    SpineRig const rig(mesh);
+    std::vector<FramePose> out;
+    for (int i = 0; i < o.frames; ++i) {
+        double const phase = o.phase + double(i) / o.frames;
+        out.push_back({phase, std::make_shared<Pose>(rig.sway(phase))});
+    }
+    return out;
+}
+
+// All that the frames will show, about.
+std::vector<glm::vec3> points_to_show(Job const& job, AnimateRequest const& animate)
+{
+    ControlMesh const& mesh = job.surface.mesh->reference();
+    std::vector<glm::vec3> points;
+    for (FramePose const& f : make_poses(animate, mesh))
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+            points.push_back(f.pose ? f.pose->posed(v, mesh.positions[v]) : mesh.positions[v]);
+    if (float const d = job.frame.displacement ? job.frame.displacement->scale() : 0; d > 0)
+        for (std::size_t i = 0, n = points.size(); i < n; ++i)
+            for (float s : {-d, d}) points.push_back(points[i] + glm::vec3(s));
+    return points;
+}
+
+Camera make_camera(CameraRequest const& o, std::span<glm::vec3 const> points, float aspect)
+{
+    Camera camera = frame_points(points, o.from, aspect);
+    if (o.target) camera.target = *o.target;
+    if (o.eye) camera.eye = *o.eye;
+    if (o.up) camera.up = *o.up;
+    if (o.focal) camera.focal = *o.focal;
+    if (camera.eye == camera.target) throw Error("--camera: eye and target are the same point");
+    if (o.eye || o.target) fit_depth_range(camera, points);
+    return camera;
+}
+
+} // namespace
+
+Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb)
+{
+    Job job = open(o, shading, verb);
+    add_config(job.header.config, shading);
+    report_warnings(job.header, o.model);
+    return job;
+}
+
+Job prepare(SurfaceRequest const& o, std::string const& verb)
+{
+    check_request(o);
+    Job job = open(o.model, o.shading, verb);
+    FrameSettings& f = job.frame;
+    f.partitioning = o.partitioning;
+    f.tess_factor = float(o.tess);
+    if (o.vertex_cache) f.vertex_cache = *o.vertex_cache;
+    f.direct3d10 = o.direct3d10;
+    f.displacement = make_displacement(o, *job.surface.mesh);
+    job.poses = make_poses(o.animate, job.surface.mesh->mesh());
     f.pose = job.poses[0].pose;
 
     ReportHeader& h = job.header;
-    h.verb = verb;
-    h.inputs = {{model.name, model.sha256}};
-    if (std::filesystem::is_regular_file(o.displace))
-        h.inputs.emplace_back(std::filesystem::path(o.displace).filename().string(),
-                              sha256_of(read_file(o.displace)));
-    h.warnings = std::move(model.warnings);
-    for (std::vector<std::string> const* more :
-         {&std::as_const(job.prepared.warnings), &job.patches->warnings()})
-        h.warnings.insert(h.warnings.end(), more->begin(), more->end());
-    print_warnings(h.warnings);
-    // Warnings of the file carry its path; a result must not.
-    std::string const prefix = o.model.substr(0, o.model.size() - model.name.size());
-    for (std::string& w : h.warnings)
-        if (!prefix.empty() && w.starts_with(prefix)) w.erase(0, prefix.size());
-    h.config = {{"scheme", o.scheme}};
-    for (SchemeParameter const& p : technique.info().parameters) {
-        auto const it = parameters.find(p.name);
-        h.config.emplace_back(p.name, it == parameters.end() ? p.default_value : it->second);
-    }
-    h.config.emplace_back("tess", o.tess);
-    h.config.emplace_back("partitioning", o.partitioning);
-    h.config.emplace_back("normals", o.normals);
-    h.config.emplace_back("contraction", o.contraction);
-    h.config.emplace_back("vertex_cache", name_of(f.vertex_cache));
-    std::filesystem::path const image = o.displace;
-    if (o.direct3d != 11) h.config.emplace_back("direct3d", std::int64_t(o.direct3d));
-    h.config.emplace_back("displace", image.filename().string());
-    if (f.displacement) h.config.emplace_back("displace_scale", double(f.displacement->scale()));
-    h.config.emplace_back("animate", o.animate);
-    if (o.animate != "none") h.config.emplace_back("phase", o.phase);
+    DisplaceRequest::Heights const& heights = o.displace.heights;
+    if (heights.kind == DisplaceRequest::Heights::Kind::Image)
+        h.inputs.emplace_back(name_of(heights), sha256_of(read_file(heights.image)));
+    Config& c = h.config;
+    c.emplace_back("tess", o.tess);
+    c.emplace_back("partitioning", std::string(name_of(o.partitioning)));
+    add_config(c, o.shading);
+    if (o.vertex_cache) c.emplace_back("vertex_cache", name_of(*o.vertex_cache));
+    if (o.direct3d10) c.emplace_back("direct3d", std::int64_t(10));
+    c.emplace_back("displace", name_of(heights));
+    if (f.displacement) c.emplace_back("displace_scale", double(f.displacement->scale()));
+    c.emplace_back("animate", name_of(o.animate.motion));
+    if (f.pose) c.emplace_back("phase", o.animate.phase);
+    report_warnings(h, o.model.model);
     return job;
+}
+
+void set_picture(Job& job, PictureRequest const& o, SurfaceRequest const& surface)
+{
+    FrameSettings& f = job.frame;
+    f.width = o.size.width;
+    f.height = o.size.height;
+    f.adaptive = o.tess_edge;
+    f.camera = make_camera(o.camera, points_to_show(job, surface.animate), o.size.aspect());
 }
 
 void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double seconds)
@@ -128,19 +226,6 @@ void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double 
              {"load_seconds", job.load_seconds},
              {"build_seconds", job.build_seconds},
              {"draw_seconds", seconds}};
-}
-
-std::vector<glm::vec3> points_to_show(Job const& job)
-{
-    std::vector<glm::vec3> points;
-    std::vector<glm::vec3> const& rest = job.prepared.mesh->positions;
-    for (FramePose const& f : job.poses)
-        for (std::size_t v = 0; v < rest.size(); ++v)
-            points.push_back(f.pose ? f.pose->posed(v, rest[v]) : rest[v]);
-    if (float const d = job.frame.displacement ? job.frame.displacement->scale() : 0; d > 0)
-        for (std::size_t i = 0, n = points.size(); i < n; ++i)
-            for (float s : {-d, d}) points.push_back(points[i] + glm::vec3(s));
-    return points;
 }
 
 ErrorRow error_row(char const* quantity, char const* measure, char const* unit,

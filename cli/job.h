@@ -1,9 +1,9 @@
-// What the verbs share: a model under a scheme with its settings, progress, results.
+// From what a user asks for to what the library works on: a model under a scheme with its settings;
+// progress and results.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "analysis/compare.h"
 #include "cli/options.h"
 #include "io/model.h"
 #include "io/report.h"
@@ -12,7 +12,7 @@
 
 namespace tessemu {
 
-inline constexpr int kCompareLevel = 4; ///< 16 segments an edge
+struct ErrorStatistics;
 
 class Stopwatch {
 public:
@@ -41,25 +41,33 @@ void print_warnings(std::vector<std::string> const& warnings);
 /// Writes a result to a file, or prints it for "-"; nothing for an empty path.
 void write_result(std::string const& path, std::string const& json);
 
-/// A model under a scheme, and the settings that draw and export share.
+struct FramePose {
+    double phase = 0;
+    std::shared_ptr<Pose const> pose; ///< none: the mesh at rest
+};
+
+/// A model under a scheme, and what a verb draws it with.
 struct Job {
-    PreparedMesh prepared;
-    std::unique_ptr<PatchMesh> patches;
+    SchemeOnMesh surface;
     FrameSettings frame;
+    std::vector<FramePose> poses; ///< one at least
     ReportHeader header;
-    std::vector<FramePose> poses;
     double load_seconds = 0, build_seconds = 0;
+
+    PatchMesh const& patches() const { return *surface.patches; }
 };
 
 /// Errors about the mesh name the file, and the line where it is known.
-void build(Model& model, Technique const& technique,
-           std::map<std::string, double> const& parameters, PreparedMesh& prepared,
-           std::unique_ptr<PatchMesh>& patches);
-/// From the options that all surface verbs share. Prints warnings.
-Job prepare(Options const& o, std::string const& verb);
+SchemeOnMesh build(Model model, ModelRequest const& o);
+/// "scheme", "subdivide" and each parameter by its name.
+Config config_of(ModelRequest const& o, Parameters const& parameters);
+/// The model and its settings for shading. Prints warnings.
+Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb);
+/// With everything that verbs that tessellate share.
+Job prepare(SurfaceRequest const& o, std::string const& verb);
+/// Size, factors and camera, which shows the model as it moves through all frames.
+void set_picture(Job& job, PictureRequest const& o, SurfaceRequest const& surface);
 void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double seconds);
-/// All that the frames will show, about.
-std::vector<glm::vec3> points_to_show(Job const& job);
 ErrorRow error_row(char const* quantity, char const* measure, char const* unit,
                    ErrorStatistics const& e);
 

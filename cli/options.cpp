@@ -1,30 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/options.h"
 
-#include "io/image_reader.h"
-
 #include <fmt/format.h>
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
+#include <charconv>
 #include <cmath>
+#include <filesystem>
 
 namespace tessemu {
 
-namespace {
-
-double number(std::string const& text, std::string const& option)
+std::string in_words(std::vector<std::string> const& words)
 {
-    std::size_t end = 0;
-    double x = NAN;
-    try {
-        x = std::stod(text, &end);
-    } catch (std::exception const&) {
-        end = 0;
-    }
-    if (end == 0 || end != text.size() || !std::isfinite(x))
+    std::string out;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        out += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+    return out;
+}
+
+void refuse(std::string const& text, std::string const& option, std::string const& allowed)
+{
+    throw Error(option + " is '" + text + "', it must be " + allowed);
+}
+
+double any_number(std::string const& text, std::string const& option)
+{
+    std::string_view const digits = std::string_view(text).substr(text.starts_with('+') ? 1 : 0);
+    double x = 0;
+    auto const [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), x);
+    if (error != std::errc() || end != digits.data() + digits.size())
         throw Error(option + ": '" + text + "' is not a number");
+    return x;
+}
+
+double finite_number(std::string const& text, std::string const& option)
+{
+    double const x = any_number(text, option);
+    if (!std::isfinite(x)) throw Error(option + ": '" + text + "' is not a number");
+    return x;
+}
+
+std::int64_t whole_number(std::string const& text, std::string const& option, std::int64_t low,
+                          std::int64_t high)
+{
+    std::int64_t x = 0;
+    auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+    if (error == std::errc::invalid_argument || end != text.data() + text.size())
+        throw Error(option + ": '" + text + "' is not a whole number");
+    if (error != std::errc() || x < low || x > high)
+        throw Error(fmt::format("{} is {}, it must be {} to {}", option, text, low, high));
     return x;
 }
 
@@ -40,174 +63,266 @@ std::vector<std::string> split(std::string const& text, char separator)
     return parts;
 }
 
-glm::vec3 parse_vector(std::string const& text)
+namespace {
+
+Scheme const* parse_scheme(std::string const& text, std::string const&)
 {
-    auto const parts = split(text, ',');
-    if (parts.size() != 3) throw Error("--camera: '" + text + "' is not X,Y,Z");
-    return {float(number(parts[0], "--camera")), float(number(parts[1], "--camera")),
-            float(number(parts[2], "--camera"))};
+    return &find_scheme(text);
 }
 
-} // namespace
+std::pair<std::string, std::string> parse_parameter(std::string const& text,
+                                                    std::string const& option)
+{
+    std::size_t const equals = text.find('=');
+    if (equals == std::string::npos) refuse(text, option, "NAME=VALUE");
+    return {text.substr(0, equals), text.substr(equals + 1)};
+}
 
-std::pair<int, int> parse_size(std::string const& text)
+ShadingRequest::Products parse_contraction(std::string const& text, std::string const& option)
+{
+    if (text == "none") return {};
+    if (text == "all") return {Contraction::All, 0};
+    std::string const mixed = "mixed:";
+    if (!text.starts_with(mixed)) refuse(text, option, "none, all or mixed:SEED");
+    double const seed = finite_number(text.substr(mixed.size()), option + " mixed");
+    if (seed < 0 || seed != std::floor(seed) || seed > 9e15)
+        throw Error(option + ": the seed must be a whole number, 0 or above");
+    return {Contraction::Mixed, std::uint64_t(seed)};
+}
+
+int parse_lanes(std::string const& text, std::string const& option)
+{
+    int const lanes = int(whole_number(text, option, INT32_MIN, INT32_MAX));
+    try {
+        check_lanes(lanes);
+    } catch (Error const& e) {
+        throw Error(std::string("--") + e.what());
+    }
+    return lanes;
+}
+
+double parse_tess(std::string const& text, std::string const& option)
+{
+    double const x = any_number(text, option);
+    if (!(x > 0 && x <= kMaxTessFactor))
+        throw Error(
+            fmt::format("{} is {}, it must be above 0 and at most {}", option, x, kMaxTessFactor));
+    return x;
+}
+
+Partitioning parse_partitioning(std::string const& text, std::string const& option)
+{
+    auto const p = partitioning_from_name(text);
+    if (!p) refuse(text, option, "integer, pow2, fractional_odd or fractional_even");
+    return *p;
+}
+
+DisplaceRequest::Heights parse_heights(std::string const& text, std::string const&)
+{
+    using Kind = DisplaceRequest::Heights::Kind;
+    if (text == "none") return {};
+    if (text == "studs") return {Kind::Studs, ""};
+    return {Kind::Image, text};
+}
+
+// Finite as a float too.
+double parse_finite(std::string const& text, std::string const& option)
+{
+    double const x = any_number(text, option);
+    if (!std::isfinite(float(x)))
+        throw Error(fmt::format("{} is {}, it must be a finite number", option, x));
+    return x;
+}
+
+PictureSize parse_size(std::string const& text, std::string const& option)
 {
     auto const parts = split(text, 'x');
-    if (parts.size() != 2) throw Error("--size is '" + text + "', it must be WIDTHxHEIGHT");
+    if (parts.size() != 2) refuse(text, option, "WIDTHxHEIGHT");
     int out[2];
     for (std::size_t i = 0; i < 2; ++i) {
-        double const x = number(parts[i], "--size");
+        double const x = finite_number(parts[i], option);
         if (x != std::floor(x) || x < 1 || x > ColorTarget::kMaxSize)
-            throw Error(fmt::format("--size: {} is not a whole number from 1 to {}", parts[i],
+            throw Error(fmt::format("{}: {} is not a whole number from 1 to {}", option, parts[i],
                                     ColorTarget::kMaxSize));
         out[i] = int(x);
     }
     return {out[0], out[1]};
 }
 
-Camera parse_camera(std::string const& text, std::span<glm::vec3 const> points,
-                    float width_over_height)
+glm::vec3 parse_vector(std::string const& text, std::string const& option)
 {
-    glm::vec3 from(0.5f, 0.5f, 1.0f);
-    std::optional<glm::vec3> eye, target, up;
-    std::optional<float> focal;
-    if (text != "auto") {
-        for (std::string const& part : split(text, ':')) {
-            std::size_t const equals = part.find('=');
-            std::string const key = part.substr(0, equals);
-            std::string const value = equals == std::string::npos ? "" : part.substr(equals + 1);
-            if (key == "from")
-                from = parse_vector(value);
-            else if (key == "eye")
-                eye = parse_vector(value);
-            else if (key == "target")
-                target = parse_vector(value);
-            else if (key == "up")
-                up = parse_vector(value);
-            else if (key == "focal")
-                focal = float(number(value, "--camera focal"));
-            else
-                throw Error("--camera: '" + part +
-                            "' is not auto, from=, eye=, target=, up= or focal=");
-        }
-    }
-    if (from.x == 0 && from.y == 0 && from.z == 0)
-        throw Error("--camera: from=0,0,0 is no direction");
-    Camera camera = frame_points(points, from, width_over_height);
-    if (target) camera.target = *target;
-    if (eye) camera.eye = *eye;
-    if (up) camera.up = *up;
-    if (focal) camera.focal = *focal;
-    if (!(camera.focal > 0)) throw Error("--camera: focal must be above 0");
-    if (camera.eye == camera.target) throw Error("--camera: eye and target are the same point");
-    if (eye || target) fit_depth_range(camera, points);
-    return camera;
-}
-
-Machine parse_machine(Options const& o)
-{
-    Machine m;
-    m.lanes = o.lanes;
-    if (o.contraction == "all") {
-        m.contraction = Contraction::All;
-    } else if (o.contraction.starts_with("mixed:")) {
-        double const seed = number(o.contraction.substr(6), "--contraction mixed");
-        if (seed < 0 || seed != std::floor(seed) || seed > 9e15)
-            throw Error("--contraction: the seed must be a whole number, 0 or above");
-        m.contraction = Contraction::Mixed;
-        m.seed = std::uint64_t(seed);
-    } else if (o.contraction != "none") {
-        throw Error("--contraction is '" + o.contraction + "', it must be none, all or mixed:SEED");
-    }
-    return m;
-}
-
-std::map<std::string, double> parse_parameters(Options const& o)
-{
-    std::map<std::string, double> out;
-    for (std::string const& s : o.set) {
-        std::size_t const equals = s.find('=');
-        if (equals == std::string::npos) throw Error("--set is '" + s + "', it must be NAME=VALUE");
-        out[s.substr(0, equals)] = number(s.substr(equals + 1), "--set " + s.substr(0, equals));
-    }
-    return out;
-}
-
-std::optional<std::pair<double, double>> parse_error_max(std::string const& text)
-{
-    if (text == "auto") return {};
     auto const parts = split(text, ',');
-    if (parts.size() != 2)
-        throw Error("--error-max is '" + text + "', it must be auto or POSITION,ANGLE");
-    std::pair const out(number(parts[0], "--error-max"), number(parts[1], "--error-max"));
-    if (!(out.first > 0 && out.second > 0))
-        throw Error("--error-max is '" + text + "', both must be above 0");
+    if (parts.size() != 3) throw Error(option + ": '" + text + "' is not X,Y,Z");
+    return {float(finite_number(parts[0], option)), float(finite_number(parts[1], option)),
+            float(finite_number(parts[2], option))};
+}
+
+CameraRequest parse_camera(std::string const& text, std::string const& option)
+{
+    CameraRequest out;
+    if (text == "auto") return out;
+    for (std::string const& part : split(text, ':')) {
+        std::size_t const equals = part.find('=');
+        std::string const key = part.substr(0, equals);
+        std::string const value = equals == std::string::npos ? "" : part.substr(equals + 1);
+        if (key == "from")
+            out.from = parse_vector(value, option);
+        else if (key == "eye")
+            out.eye = parse_vector(value, option);
+        else if (key == "target")
+            out.target = parse_vector(value, option);
+        else if (key == "up")
+            out.up = parse_vector(value, option);
+        else if (key == "focal")
+            out.focal = float(finite_number(value, option + " focal"));
+        else
+            throw Error(option + ": '" + part +
+                        "' is not auto, from=, eye=, target=, up= or focal=");
+    }
+    if (out.from == glm::vec3(0)) throw Error(option + ": from=0,0,0 is no direction");
+    if (out.focal && !(*out.focal > 0)) throw Error(option + ": focal must be above 0");
     return out;
 }
 
-AdaptiveFactors parse_tess_edge(std::string const& text)
+AdaptiveFactors parse_tess_edge(std::string const& text, std::string const& option)
 {
     if (text == "none") return {};
     std::size_t const equals = text.find('=');
     std::string const key = text.substr(0, equals);
     if (equals == std::string::npos || (key != "pixels" && key != "distance"))
-        throw Error("--tess-edge is '" + text + "', it must be none, pixels=P or distance=D");
-    double const value = number(text.substr(equals + 1), "--tess-edge " + key);
+        refuse(text, option, "none, pixels=P or distance=D");
+    double const value = finite_number(text.substr(equals + 1), option + " " + key);
     if (!(value > 0 && value < 1e30))
-        throw Error(fmt::format("--tess-edge: {} is {}, it must be above 0", key, value));
+        throw Error(fmt::format("{}: {} is {}, it must be above 0", option, key, value));
     return {key == "pixels" ? AdaptiveFactors::Kind::Pixels : AdaptiveFactors::Kind::Distance,
             float(value)};
 }
 
-std::shared_ptr<Displacement const> parse_displacement(Options const& o, Topology const& topology)
+VertexCacheModel parse_vertex_cache(std::string const& text, std::string const&)
 {
-    if (o.displace == "none") {
-        if (o.displace_scale) throw Error("--displace-scale needs --displace");
-        return {};
-    }
-    glm::vec3 low(INFINITY), high(-INFINITY);
-    for (glm::vec3 const& p : topology.mesh().positions) low = min(low, p), high = max(high, p);
-    float const diagonal = glm::length(high - low);
-    float const scale = o.displace_scale ? float(*o.displace_scale) : 0.01f * diagonal;
-    if (!std::isfinite(scale))
-        throw Error(fmt::format("--displace-scale is {}, it must be a finite number", scale));
-    if (o.displace == "studs")
-        return std::make_shared<Displacement>(Displacement::studs(diagonal / 16, scale));
-    HeightImage const image = read_height_image(o.displace);
-    try {
-        return std::make_shared<Displacement>(topology, image, scale);
-    } catch (Error const& e) {
-        throw Error(o.model + ": " + e.what());
-    }
+    return vertex_cache_from_name(text);
 }
 
-std::vector<FramePose> parse_frames(Options const& o, ControlMesh const& mesh)
+} // namespace
+
+void add_options(Verb& verb, ModelRequest& o)
 {
-    if (o.animate != "none" && o.animate != "sway")
-        throw Error("--animate is '" + o.animate + "', it must be none or sway");
-    if (o.frames < 1 || o.frames > 10000)
-        throw Error(fmt::format("--frames is {}, it must be 1 to 10000", o.frames));
-    if (!std::isfinite(o.phase))
-        throw Error(fmt::format("--phase is {}, it must be a finite number", o.phase));
-    if (o.animate == "none") {
-        if (o.frames > 1 || o.phase != 0) throw Error("--frames and --phase need --animate");
-        return {{}};
-    }
-    SpineRig const rig(mesh);
-    std::vector<FramePose> out;
-    for (int i = 0; i < o.frames; ++i) {
-        double const phase = o.phase + double(i) / o.frames;
-        out.push_back({phase, std::make_shared<Pose>(rig.sway(phase))});
-    }
-    return out;
+    verb.required("MODEL", o.model, plain, "OBJ file or built-in cage, see 'tessemu models'");
+    verb.option("--scheme", o.scheme, parse_scheme, "patch scheme, see 'tessemu schemes'",
+                "gregory-stencil");
+    verb.list("--set", o.build.set, parse_parameter, "NAME=VALUE: a parameter of the scheme");
+    verb.option("--subdivide", o.build.subdivide, whole(0, 6),
+                "steps of Catmull-Clark subdivision of the mesh before the scheme, 0 to 6; nothing "
+                "counts them",
+                "0");
 }
 
-CullMode parse_cull(std::string const& text)
+void add_options(Verb& verb, ShadingRequest& o)
 {
-    if (text == "none") return CullMode::None;
-    if (text == "back") return CullMode::Back;
-    if (text == "front") return CullMode::Front;
-    throw Error("--cull is '" + text + "', it must be none, back or front");
+    verb.option("--normals", o.true_normals, one_of<bool>({{"frozen", false}, {"true", true}}),
+                "inside a patch: frozen (LOOP09 4.4) or true", "frozen");
+    verb.option("--contraction", o.products, parse_contraction,
+                "products that feed sums: none, all, mixed:SEED", "none");
+    verb.option("--lanes", o.lanes, parse_lanes, "4, 8 or 16; changes no result",
+                std::to_string(kNativeLanes));
+}
+
+void add_options(Verb& verb, SurfaceRequest& o)
+{
+    add_options(verb, o.model);
+    verb.option("--tess", o.tess, parse_tess, "tess factor of every edge and inside, above 0 to 64",
+                "8");
+    add_partitioning(verb, o.partitioning);
+    add_options(verb, o.shading);
+    verb.option("--displace", o.displace.heights, parse_heights,
+                "along the normal: studs, a pattern in space; or an image on the mesh's texture "
+                "coordinates; or none",
+                "none");
+    verb.option("--displace-scale", o.displace.scale, parse_finite,
+                "displacement of a white texel, in the model's units [0.01 of its diagonal]");
+    using Motion = AnimateRequest::Motion;
+    verb.option("--animate", o.animate.motion,
+                one_of<Motion>({{"none", Motion::None}, {"sway", Motion::Sway}}),
+                "sway: bones along the model's longest side, bent by a wave; or none", "none");
+    verb.option("--phase", o.animate.phase, parse_finite, "where the motion begins, in periods",
+                "0");
+    verb.option("--direct3d", o.direct3d10, one_of<bool>({{"10", true}, {"11", false}}),
+                "11: hull shader, tessellator, domain shader; 10: geometry shader, stream output, "
+                "instances (LOOP09 5)",
+                "11");
+}
+
+void add_options(Verb& verb, PictureRequest& o)
+{
+    verb.option("--size", o.size, parse_size, "WIDTHxHEIGHT in pixels", "1024x1024");
+    verb.option("--camera", o.camera, parse_camera,
+                "auto, from=X,Y,Z, or eye=X,Y,Z:target=X,Y,Z:up=X,Y,Z:focal=F", "auto");
+    verb.option("--tess-edge", o.tess_edge, parse_tess_edge,
+                "factors edge by edge: pixels=P, segments of about P pixels; distance=D, --tess at "
+                "distance D and falling with it; none: --tess everywhere",
+                "none");
+}
+
+void add_options(Verb& verb, RunRequest& o)
+{
+    verb.option("-j", o.threads, whole(0, 1024), "threads; 0: all cores", "0");
+    add_json(verb, o.json);
+}
+
+void add_partitioning(Verb& verb, Partitioning& partitioning)
+{
+    verb.option("--partitioning", partitioning, parse_partitioning,
+                "integer, pow2, fractional_odd, fractional_even", "fractional_odd");
+}
+
+void add_vertex_cache(Verb& verb, SurfaceRequest& o)
+{
+    verb.option("--vertex-cache", o.vertex_cache, parse_vertex_cache,
+                "none, fifo:N, lru:N, infinite", "fifo:16");
+}
+
+void add_json(Verb& verb, std::string& path)
+{
+    verb.option("--json", path, plain, "write the result as JSON; '-' is standard output");
+}
+
+void add_level(Verb& verb, int& level, std::string const& about)
+{
+    verb.option("--level", level, whole(1, 6), about, "4");
+}
+
+void check_request(SurfaceRequest const& o)
+{
+    if (o.displace.scale && o.displace.heights.kind == DisplaceRequest::Heights::Kind::None)
+        throw Error("--displace-scale needs --displace");
+    if (o.animate.motion == AnimateRequest::Motion::None &&
+        (o.animate.frames > 1 || o.animate.phase != 0))
+        throw Error("--frames and --phase need --animate");
+}
+
+std::string name_of(ShadingRequest::Products const& p)
+{
+    if (p.contraction == Contraction::None) return "none";
+    return p.contraction == Contraction::All ? "all" : "mixed:" + std::to_string(p.seed);
+}
+
+std::string name_of(AdaptiveFactors const& f)
+{
+    if (f.kind == AdaptiveFactors::Kind::None) return "none";
+    return fmt::format("{}={}", f.kind == AdaptiveFactors::Kind::Pixels ? "pixels" : "distance",
+                       f.value);
+}
+
+std::string name_of(DisplaceRequest::Heights const& h)
+{
+    using Kind = DisplaceRequest::Heights::Kind;
+    if (h.kind == Kind::None) return "none";
+    return h.kind == Kind::Studs ? "studs" : std::filesystem::path(h.image).filename().string();
+}
+
+std::string name_of(AnimateRequest::Motion motion)
+{
+    return motion == AnimateRequest::Motion::None ? "none" : "sway";
 }
 
 } // namespace tessemu

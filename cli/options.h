@@ -1,51 +1,146 @@
-// Options as the user wrote them, and what they mean.
+// What several verbs ask for: their options as typed values, and how text becomes them.
+//
+// Parsers take (text, option) and throw Error that names the option, the text and what is allowed.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "cli/command_line.h"
 #include "pipeline/frame.h"
+#include "pipeline/schemes/scheme.h"
 
 namespace tessemu {
 
-struct Options {
-    std::string model, output, json;
-    std::string scheme = "gregory-stencil", partitioning = "fractional_odd", size = "1024x1024";
-    std::string camera = "auto", view = "lit", normals = "frozen", contraction = "none",
-                cull = "none";
-    std::string vertex_cache = "fifo:16", tess_edge = "none", displace = "none", animate = "none",
-                error_max = "auto", mistake = "none";
-    std::string reproduce, models = ".", machine = "gtx260";
-    std::string domain = "quad", primitive = "triangle_cw", batch;
-    std::vector<double> factors;
-    std::vector<std::string> set;
-    std::string other;
-    double tess = 8, tolerance = 0, phase = 0;
-    std::optional<double> displace_scale, parity;
-    std::int64_t rays = 200000, mistaken_face = 0;
-    std::optional<int> level;
-    int lanes = kNativeLanes, threads = 0, samples = 1, frames = 1, direct3d = 11;
-    bool weld = false, all = false, geometry_only = false;
+/// MODEL, --scheme, --set, --subdivide
+struct ModelRequest {
+    std::string model; ///< a path, or a built-in's name
+    Scheme const* scheme = nullptr;
+    BuildOptions build;
 };
 
-// Each throws Error that names the option, the value and what is allowed.
-std::pair<int, int> parse_size(std::string const& text);
-/// auto, from=X,Y,Z, or eye=X,Y,Z with target=, up=, focal=, joined by colons.
-Camera parse_camera(std::string const& text, std::span<glm::vec3 const> points,
-                    float width_over_height);
-Machine parse_machine(Options const& o);
-std::map<std::string, double> parse_parameters(Options const& o);
-/// auto, or POSITION,ANGLE: what is red; nothing for auto
-std::optional<std::pair<double, double>> parse_error_max(std::string const& text);
-/// none, pixels=P or distance=D
-AdaptiveFactors parse_tess_edge(std::string const& text);
-/// none, studs, or the path of an image; nothing for none. May read the file.
-std::shared_ptr<Displacement const> parse_displacement(Options const& o, Topology const& topology);
-/// The poses of the frames asked for; one without a pose where nothing is animated.
-struct FramePose {
-    double phase = 0;
-    std::shared_ptr<Pose const> pose;
+/// --normals, --contraction, --lanes
+struct ShadingRequest {
+    struct Products { ///< what becomes of those that feed sums
+        Contraction contraction = Contraction::None;
+        std::uint64_t seed = 0;
+    };
+    bool true_normals = false;
+    Products products;
+    int lanes = kNativeLanes;
+
+    Machine machine() const { return {lanes, products.contraction, products.seed}; }
 };
-std::vector<FramePose> parse_frames(Options const& o, ControlMesh const& mesh);
-CullMode parse_cull(std::string const& text);
+
+/// --displace, --displace-scale
+struct DisplaceRequest {
+    struct Heights {
+        enum class Kind { None, Studs, Image };
+        Kind kind = Kind::None;
+        std::string image; ///< its path
+    };
+    Heights heights;
+    std::optional<double> scale; ///< of a white texel; by default a share of the model's diagonal
+};
+
+/// --animate, --phase, and of draw --frames
+struct AnimateRequest {
+    enum class Motion { None, Sway };
+    Motion motion = Motion::None;
+    double phase = 0;
+    int frames = 1;
+};
+
+/// What verbs that tessellate a surface share.
+struct SurfaceRequest {
+    ModelRequest model;
+    ShadingRequest shading;
+    double tess = 0;
+    Partitioning partitioning = Partitioning::FractionalOdd;
+    DisplaceRequest displace;
+    AnimateRequest animate;
+    bool direct3d10 = false;
+    std::optional<VertexCacheModel> vertex_cache; ///< where the verb models one
+};
+
+/// --size
+struct PictureSize {
+    int width = 0, height = 0;
+    float aspect() const { return float(width) / float(height); }
+};
+
+/// --camera
+struct CameraRequest {
+    glm::vec3 from{0.5f, 0.5f, 1.0f}; ///< direction to the eye, where the model is framed
+    std::optional<glm::vec3> eye, target, up;
+    std::optional<float> focal;
+};
+
+/// --size, --camera, --tess-edge
+struct PictureRequest {
+    PictureSize size;
+    CameraRequest camera;
+    AdaptiveFactors tess_edge;
+};
+
+/// -j, --json
+struct RunRequest {
+    int threads = 0;
+    std::string json; ///< empty: none; "-": standard output
+};
+
+void add_options(Verb& verb, ModelRequest& o);
+void add_options(Verb& verb, ShadingRequest& o);
+/// With the two above.
+void add_options(Verb& verb, SurfaceRequest& o);
+void add_options(Verb& verb, PictureRequest& o);
+void add_options(Verb& verb, RunRequest& o);
+void add_partitioning(Verb& verb, Partitioning& partitioning);
+void add_vertex_cache(Verb& verb, SurfaceRequest& o);
+void add_json(Verb& verb, std::string& path);
+/// Of a comparison: 1 to 6.
+void add_level(Verb& verb, int& level, std::string const& about);
+
+/// Throws Error where an option needs another one.
+void check_request(SurfaceRequest const& o);
+
+// Settings by name, as a user writes them and results hold them.
+std::string name_of(ShadingRequest::Products const& products);
+std::string name_of(AdaptiveFactors const& factors);
+std::string name_of(DisplaceRequest::Heights const& heights); ///< an image without its folder
+std::string name_of(AnimateRequest::Motion motion);
+
+/// "a, b or c"
+std::string in_words(std::vector<std::string> const& words);
+[[noreturn]] void refuse(std::string const& text, std::string const& option,
+                         std::string const& allowed);
+
+/// A finite number. Refuses any other text.
+double finite_number(std::string const& text, std::string const& option);
+/// The same, or infinite or NaN, for options that name their own limits.
+double any_number(std::string const& text, std::string const& option);
+std::int64_t whole_number(std::string const& text, std::string const& option, std::int64_t low,
+                          std::int64_t high);
+std::vector<std::string> split(std::string const& text, char separator);
+
+/// Parser of a whole number.
+template <class Int> auto whole(Int low, Int high)
+{
+    return [low, high](std::string const& text, std::string const& option) {
+        return Int(whole_number(text, option, low, high));
+    };
+}
+
+/// Parser of one of some words.
+template <class T> auto one_of(std::vector<std::pair<std::string, T>> words)
+{
+    return [words = std::move(words)](std::string const& text, std::string const& option) {
+        std::vector<std::string> allowed;
+        for (auto const& [word, value] : words) {
+            if (word == text) return value;
+            allowed.push_back(word);
+        }
+        refuse(text, option, in_words(allowed));
+    };
+}
 
 } // namespace tessemu

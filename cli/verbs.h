@@ -1,23 +1,24 @@
-// The program's verbs: from options to library calls to what is printed. Each returns the exit
+// The program's verbs, a file each. Such a function adds its verb: the options as a struct of typed
+// values, and the work from there to library calls to what is printed. The work returns the exit
 // status and throws Error for bad usage or bad input.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "cli/options.h"
+#include "cli/command_line.h"
 
 namespace tessemu {
 
-int run_draw(Options const& o);
-int run_export(Options const& o);
-int run_compare(Options const& o);
-int run_check(Options const& o);
-int run_cost(Options const& o);
-int run_reproduce(Options const& o);
-int run_diff(Options const& o);
-int run_info(Options const& o);
-int run_tessellate(Options const& o);
-int run_schemes(Options const& o);
-int run_models(Options const& o);
+void add_draw(CommandLine& program);
+void add_export(CommandLine& program);
+void add_tessellate(CommandLine& program);
+void add_compare(CommandLine& program);
+void add_check(CommandLine& program);
+void add_cost(CommandLine& program);
+void add_reproduce(CommandLine& program);
+void add_diff(CommandLine& program);
+void add_info(CommandLine& program);
+void add_schemes(CommandLine& program);
+void add_models(CommandLine& program);
 
 } // namespace tessemu

@@ -25,11 +25,12 @@ void check(ComputeProgram const& program, std::array<std::uint32_t, 3> const& gr
 }
 } // namespace
 
-DrawStatistics dispatch(ComputeProgram const& program, std::array<std::uint32_t, 3> groups,
+DrawStatistics dispatch(ComputeShader const& shader, std::array<std::uint32_t, 3> groups,
                         ThreadPool const& threads)
 {
+    ComputeProgram const& program = *shader.operator->();
     check(program, groups);
-    StageBuffers const buffers(program.resources());
+    StageBuffers const buffers(shader.resources());
     std::uint64_t const all = std::uint64_t(groups[0]) * groups[1] * groups[2];
     constexpr std::uint64_t kPiece = 16;
     std::uint64_t const pieces = program.ordered() ? 1 : (all + kPiece - 1) / kPiece;
@@ -37,7 +38,7 @@ DrawStatistics dispatch(ComputeProgram const& program, std::array<std::uint32_t,
     threads.parallel_for(std::size_t(all ? pieces : 0), [&](std::size_t i) {
         std::uint64_t const first = program.ordered() ? 0 : i * kPiece;
         std::uint64_t const count = program.ordered() ? all : std::min(kPiece, all - first);
-        program.run(groups, first, count, counters[i], buffers);
+        shader.run(groups, first, count, counters[i], buffers);
     });
     StageCounters sum;
     for (StageCounters const& c : counters) sum += c;

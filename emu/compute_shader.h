@@ -21,7 +21,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "emu/machine.h"
+#include "emu/bound_shader.h"
 #include "emu/parallel.h"
 #include "emu/statistics.h"
 
@@ -76,7 +76,7 @@ void for_each_written(RWBuffer<E> const& b, IntLanes<N> i, Work const& work)
 {
     if constexpr (ScalarTraits<T>::kCounted) {
         execution.features |= kFetches;
-        if (execution.buffers) execution.buffers[b.slot()].written += execution.active_lanes;
+        if (FetchSlot* const s = bound_slot(b.slot())) s->written += execution.active_lanes;
     }
     for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
         int const l = std::countr_zero(bits);
@@ -198,16 +198,15 @@ public:
     virtual std::array<int, 3> threads() const = 0;
     virtual int shared_floats() const = 0;
     virtual bool ordered() const = 0;
-    virtual std::vector<ResourceInfo> resources() const = 0;
+    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
     /// Runs groups first to first + count - 1 of a dispatch, x fastest.
-    virtual void run(std::array<std::uint32_t, 3> const& groups, std::uint64_t first,
-                     std::uint64_t count, StageCounters& counters,
+    virtual void run(ShaderBinding const& binding, std::array<std::uint32_t, 3> const& groups,
+                     std::uint64_t first, std::uint64_t count, StageCounters& counters,
                      StageBuffers const& buffers) const = 0;
 };
 
 template <class Shader, class T> class ComputeProgramOn final : public ComputeProgram {
 public:
-    ComputeProgramOn(Shader const& shader, SiteState const& sites) : shader_(shader), sites_(sites) {}
     std::array<int, 3> threads() const override { return Shader::kThreads; }
     int shared_floats() const override
     {
@@ -219,18 +218,23 @@ public:
         if constexpr (requires { Shader::kOrdered; }) return Shader::kOrdered;
         return false;
     }
-    std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
-
-    void run(std::array<std::uint32_t, 3> const& groups, std::uint64_t first, std::uint64_t count,
-             StageCounters& counters, StageBuffers const& buffers) const override
+    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
     {
-        StageScope const scope(counters, buffers, sites_);
+        return resources_of(binding.as<Shader>());
+    }
+
+    void run(ShaderBinding const& binding, std::array<std::uint32_t, 3> const& groups,
+             std::uint64_t first, std::uint64_t count, StageCounters& counters,
+             StageBuffers const& buffers) const override
+    {
+        Shader const& shader = binding.as<Shader>();
+        StageScope const scope(counters, buffers, binding.sites());
         std::vector<float> shared(static_cast<std::size_t>(shared_floats()));
         ComputeGroup<T> group(Shader::kThreads, shared);
         for (std::uint64_t g = first; g < first + count; ++g) {
             group.begin({std::int32_t(g % groups[0]), std::int32_t(g / groups[0] % groups[1]),
                          std::int32_t(g / groups[0] / groups[1])});
-            shader_(group);
+            shader(group);
         }
         auto const& t = Shader::kThreads;
         counters.invocations += count * std::uint64_t(t[0] * t[1] * t[2]);
@@ -238,20 +242,18 @@ public:
         counters.shared_stores += group.shared_stores();
         counters.shared_out_of_range += group.shared_out_of_range();
     }
-
-private:
-    Shader shader_;
-    SiteState sites_;
 };
 
+using ComputeShader = BoundShader<ComputeProgram>;
+
 template <class Shader>
-std::unique_ptr<ComputeProgram> make_compute_program(Shader const& shader, Machine const& machine)
+ComputeShader bind_compute_shader(Shader const& shader, Machine const& machine)
 {
-    return make_program<ComputeProgramOn, ComputeProgram>(shader, machine);
+    return bind_shader<ComputeProgramOn, ComputeProgram>(shader, machine);
 }
 
 /// Runs x * y * z groups; any 0 does nothing (R151). Throws LimitError past D3D11's limits.
-DrawStatistics dispatch(ComputeProgram const& program, std::array<std::uint32_t, 3> groups,
+DrawStatistics dispatch(ComputeShader const& shader, std::array<std::uint32_t, 3> groups,
                         ThreadPool const& threads);
 
 } // namespace tessemu

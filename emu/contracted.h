@@ -83,7 +83,7 @@ private:
 
 /// A group of invocations starts at the shader's first line, with these lanes.
 ///
-/// \param first_site  numbers the sites from here on; not 0 where several pieces of one shader follow
+/// \param first_site  of the sites that follow; not 0 where a piece of the shader went before
 template <class T> void begin_group(std::uint32_t active_bits, std::uint64_t first_site = 0)
 {
     execution.activate(active_bits);
@@ -115,10 +115,7 @@ template <class T> struct Contracted {
     friend Contracted operator-(Contracted a, Contracted b) { return T(a.value - b.value); }
     friend Contracted operator-(Product p, Contracted c) { return fuse(p.a, p.b, T(-c.value)); }
     friend Contracted operator-(Contracted c, Product p) { return fuse(T(-p.a), p.b, c.value); }
-    friend Contracted operator-(Product p, Product q)
-    {
-        return fuse(p.a, p.b, T(-T(q.a * q.b)));
-    }
+    friend Contracted operator-(Product p, Product q) { return fuse(p.a, p.b, T(-T(q.a * q.b))); }
 
     friend Contracted operator/(Contracted a, Contracted b) { return T(a.value / b.value); }
     friend Contracted operator-(Contracted a) { return T(-a.value); }

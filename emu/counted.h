@@ -55,6 +55,7 @@ struct Execution {
     std::uint32_t active_bits = 1;  ///< bit i: lane i runs
     std::uint32_t active_lanes = 1; ///< popcount of active_bits
     FetchSlot* buffers = nullptr;   ///< the stage's buffer slots, by slot number
+    std::uint32_t buffer_slots = 0; ///< how many
     std::uint32_t features = 0;     ///< ShaderFeature bits met since the state was made
 
     void activate(std::uint32_t bits)

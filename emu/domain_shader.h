@@ -4,7 +4,8 @@
 //
 //     struct S {
 //         static constexpr TessellatorDomain kDomain;
-//         static constexpr int kControlPoints;           // that it declares, as the hull shader's
+//         static constexpr int kControlPoints;           // optional: how many the hull shader puts
+//                                                        // out; otherwise any number
 //         template <class T> using ControlPoint = ...;   // the hull shader's records
 //         template <class T> using PatchConstant = ...;
 //         template <class T> using Output = ...;         // record; first member float4<T> position
@@ -25,7 +26,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "emu/machine.h"
+#include "emu/bound_shader.h"
 #include "emu/statistics.h"
 #include "emu/tessellator.h"
 
@@ -40,11 +41,14 @@ template <class T> struct DomainInput {
     std::int32_t primitive_id = 0;
 };
 
-class DomainEpilog;
+class DomainEpilogProgram;
+using DomainEpilog = BoundShader<DomainEpilogProgram>;
 
 struct DomainBatch {
     float const* control_points;
+    int control_point_count; ///< that the hull shader wrote
     float const* patch_constants;
+    int patch_constant_count;
     std::int32_t primitive_id;
     float const* u; ///< padded to a whole group of lanes
     float const* v;
@@ -55,32 +59,31 @@ struct DomainBatch {
 };
 
 /// The end of a domain shader.
-class DomainEpilog {
+class DomainEpilogProgram {
 public:
-    virtual ~DomainEpilog() = default;
+    virtual ~DomainEpilogProgram() = default;
     virtual int input_floats() const = 0;
     virtual OutputLayout output() const = 0;
-    virtual std::vector<ResourceInfo> resources() const = 0;
+    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
     /// Points `first` to `first + count - 1` of a batch; `first` is a multiple of the lanes.
-    virtual void run(DomainBatch const& batch, std::size_t first, std::size_t count) const = 0;
+    virtual void run(ShaderBinding const& binding, DomainBatch const& batch, std::size_t first,
+                     std::size_t count) const = 0;
 };
 
 class DomainProgram {
 public:
     virtual ~DomainProgram() = default;
     virtual TessellatorDomain domain() const = 0;
+    /// That the shader type declares; 0: as many as the draw's hull shader puts out.
     virtual int control_points() const = 0;
     virtual int control_point_floats() const = 0;
     virtual int patch_constant_floats() const = 0;
     virtual OutputLayout output() const = 0;
     int output_floats() const { return output().floats; }
-    virtual std::vector<ResourceInfo> resources() const = 0;
+    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
     /// Runs a patch, inside a StageScope that the caller holds open over many patches.
-    /// `patch_constants` says how many registers the hull shader wrote.
-    virtual void run(DomainBatch const& batch, int patch_constants,
+    virtual void run(ShaderBinding const& binding, DomainBatch const& batch,
                      StageCounters& counters) const = 0;
-    /// The contraction of the stage's door.
-    virtual SiteState sites() const = 0;
 };
 
 namespace detail {
@@ -109,21 +112,27 @@ template <class Shader, class T> class DomainProgramOn final : public DomainProg
     static constexpr std::size_t kBlock = 256; // points that an epilog finds in the nearest cache
 
 public:
-    DomainProgramOn(Shader const& shader, SiteState const& sites) : shader_(shader), sites_(sites) {}
     TessellatorDomain domain() const override { return Shader::kDomain; }
-    int control_points() const override { return Shader::kControlPoints; }
+    int control_points() const override
+    {
+        if constexpr (requires { Shader::kControlPoints; }) return Shader::kControlPoints;
+        return 0;
+    }
     int control_point_floats() const override { return scalar_count<Point>(); }
     int patch_constant_floats() const override { return scalar_count<Constant>(); }
     OutputLayout output() const override { return output_layout<Output>(); }
-    std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
-    SiteState sites() const override { return sites_; }
+    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
+    {
+        return resources_of(binding.as<Shader>());
+    }
 
-    void run(DomainBatch const& b, int patch_constants, StageCounters& counters) const override
+    void run(ShaderBinding const& binding, DomainBatch const& b,
+             StageCounters& counters) const override
     {
         if constexpr (ScalarTraits<T>::kSites)
-            run_points(b, patch_constants, counters);
+            run_points(binding.as<Shader>(), b, counters);
         else
-            run_flattened(b, patch_constants, counters);
+            run_flattened(binding.as<Shader>(), b, counters);
     }
 
 private:
@@ -133,21 +142,21 @@ private:
     [[gnu::flatten]]
 #endif
     void
-    run_flattened(DomainBatch const& b, int patch_constants, StageCounters& counters) const
+    run_flattened(Shader const& shader, DomainBatch const& b, StageCounters& counters) const
     {
-        run_points(b, patch_constants, counters);
+        run_points(shader, b, counters);
     }
 
-    void run_points(DomainBatch const& b, int patch_constants, StageCounters& counters) const
+    void run_points(Shader const& shader, DomainBatch const& b, StageCounters& counters) const
     {
-        ControlPoints<Point> const points(b.control_points, Shader::kControlPoints);
-        ControlPoints<Constant> const constants(b.patch_constants, patch_constants);
+        ControlPoints<Point> const points(b.control_points, b.control_point_count);
+        ControlPoints<Constant> const constants(b.patch_constants, b.patch_constant_count);
         for (std::size_t block = 0; block < b.points; block += kBlock) {
             std::size_t const end = std::min(block + kBlock, b.points);
             for (std::size_t first = block; first < end; first += N) {
                 detail::begin_domain_group<T>(end - first);
                 Output const out =
-                    shader_(detail::domain_input<T, Shader::kDomain>(b, first), points, constants);
+                    shader(detail::domain_input<T, Shader::kDomain>(b, first), points, constants);
                 float* at = b.outputs + first;
                 for_each_scalar(out, [&](auto const& s) {
                     lanes_value(s).store(at);
@@ -162,30 +171,33 @@ private:
         counters.constant_fetches += constants.fetches();
         counters.constant_touched += constants.touched();
     }
-
-    Shader shader_;
-    SiteState sites_;
 };
 
+using DomainShader = BoundShader<DomainProgram>;
+
 template <class Shader>
-std::unique_ptr<DomainProgram> make_domain_program(Shader const& shader, Machine const& machine)
+DomainShader bind_domain_shader(Shader const& shader, Machine const& machine)
 {
-    return make_program<DomainProgramOn, DomainProgram>(shader, machine);
+    return bind_shader<DomainProgramOn, DomainProgram>(shader, machine);
 }
 
-template <class Shader, class T> class DomainEpilogOn final : public DomainEpilog {
+template <class Shader, class T> class DomainEpilogProgramOn final : public DomainEpilogProgram {
     static constexpr std::size_t N = lanes_of<T>;
     using Input = typename Shader::template Input<T>;
     using Output = typename Shader::template Output<T>;
 
 public:
-    DomainEpilogOn(Shader const& shader, SiteState const&) : shader_(shader) {}
     int input_floats() const override { return scalar_count<Input>(); }
     OutputLayout output() const override { return output_layout<Output>(); }
-    std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
-
-    void run(DomainBatch const& b, std::size_t begin, std::size_t count) const override
+    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
     {
+        return resources_of(binding.as<Shader>());
+    }
+
+    void run(ShaderBinding const& binding, DomainBatch const& b, std::size_t begin,
+             std::size_t count) const override
+    {
+        Shader const& shader = binding.as<Shader>();
         for (std::size_t first = begin; first < begin + count; first += N) {
             detail::begin_domain_group<T>(begin + count - first);
             float* at = b.outputs + first;
@@ -197,27 +209,19 @@ public:
             at = b.outputs + first;
             // An epilog knows of u and v; w is the domain's own affair.
             Output const out =
-                shader_(detail::domain_input<T, TessellatorDomain::Quad>(b, first), input);
+                shader(detail::domain_input<T, TessellatorDomain::Quad>(b, first), input);
             for_each_scalar(out, [&](auto const& s) {
                 lanes_value(s).store(at);
                 at += b.stride;
             });
         }
     }
-
-private:
-    Shader shader_;
 };
 
 template <class Shader>
-std::unique_ptr<DomainEpilog> make_domain_epilog(Shader const& shader, Machine const& machine)
+DomainEpilog bind_domain_epilog(Shader const& shader, Machine const& machine)
 {
-    return make_program<DomainEpilogOn, DomainEpilog>(shader, machine);
+    return bind_shader<DomainEpilogProgramOn, DomainEpilogProgram>(shader, machine);
 }
-
-/// A domain shader and its epilog, for the same machine and with slots of their own. Throws Error
-/// if the epilog does not take what the shader gives.
-std::shared_ptr<DomainProgram const> with_epilog(std::shared_ptr<DomainProgram const> shader,
-                                                 std::shared_ptr<DomainEpilog const> epilog);
 
 } // namespace tessemu

@@ -4,17 +4,16 @@
 // A geometry shader is
 //
 //     struct S {
-//         static constexpr PrimitiveTopology kInput;      // PointList, LineList, TriangleList,
-//                                                         // LineListAdj, TriangleListAdj or
-//                                                         PatchList
+//         static constexpr PrimitiveTopology kInput;      // PointList, LineList, LineListAdj,
+//                                                         // TriangleList, TriangleListAdj or
+//                                                         // PatchList
 //         static constexpr int kControlPoints = ...;      // with PatchList only
 //         static constexpr GeometryOutput kOutput;
 //         static constexpr int kMaxVertices;              // that one invocation may append
 //         static constexpr int kInstances = ...;          // optional, 1 to 32
 //         template <class T> using Input = ...;           // record of the stage before
-//         template <class T> using Output = ...;          // record; first member float4<T>
-//         position
-//                                                         // where it is rasterized
+//         template <class T> using Output = ...;          // record; where it is rasterized its
+//                                                         // first member is float4<T> position
 //         template <class T> void operator()(GeometryInput<T> const&, std::span<Input<T> const>,
 //                                            VertexStream<Output<T>>&) const;
 //     };
@@ -24,8 +23,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "emu/bound_shader.h"
 #include "emu/input_assembler.h"
-#include "emu/machine.h"
 #include "emu/statistics.h"
 
 #include <cassert>
@@ -151,8 +150,9 @@ public:
     virtual int input_floats() const = 0;
     virtual int input_fetch_floats() const { return input_floats(); } ///< of one fetch
     virtual OutputLayout output() const = 0;
-    virtual std::vector<ResourceInfo> resources() const = 0;
-    virtual void run(GeometryBatch const& batch, GeometryResult& result, StageCounters& counters,
+    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
+    virtual void run(ShaderBinding const& binding, GeometryBatch const& batch,
+                     GeometryResult& result, StageCounters& counters,
                      StageBuffers const& buffers) const = 0;
     int vertices_per_output() const { return 1 + int(output_topology()); }
 };
@@ -174,7 +174,6 @@ template <class Shader, class T> class GeometryProgramOn final : public Geometry
     }
 
 public:
-    GeometryProgramOn(Shader const& shader, SiteState const& sites) : shader_(shader), sites_(sites) {}
     PrimitiveTopology input_topology() const override { return Shader::kInput; }
     int input_vertices() const override
     {
@@ -185,12 +184,16 @@ public:
     int instances() const override { return instance_count(); }
     int input_floats() const override { return scalar_count<Input>(); }
     OutputLayout output() const override { return output_layout<Output>(); }
-    std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
-
-    void run(GeometryBatch const& b, GeometryResult& result, StageCounters& counters,
-             StageBuffers const& buffers) const override
+    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
     {
-        StageScope const scope(counters, buffers, sites_);
+        return resources_of(binding.as<Shader>());
+    }
+
+    void run(ShaderBinding const& binding, GeometryBatch const& b, GeometryResult& result,
+             StageCounters& counters, StageBuffers const& buffers) const override
+    {
+        Shader const& shader = binding.as<Shader>();
+        StageScope const scope(counters, buffers, binding.sites());
         auto const n = std::size_t(input_vertices());
         std::size_t const primitives = b.primitive_ids.size();
         std::vector<Input> in(n);
@@ -216,7 +219,7 @@ public:
                 input.instance_id = i;
                 begin_group<T>((1u << active) - 1);
                 stream.begin_instance();
-                shader_(input, std::span<Input const>(in), stream);
+                shader(input, std::span<Input const>(in), stream);
             }
             for (int l = 0; l < active; ++l) collect(stream, l, result);
         }
@@ -257,15 +260,14 @@ private:
             r[1] = i;
         }
     }
-
-    Shader shader_;
-    SiteState sites_;
 };
 
+using GeometryShader = BoundShader<GeometryProgram>;
+
 template <class Shader>
-std::unique_ptr<GeometryProgram> make_geometry_program(Shader const& shader, Machine const& machine)
+GeometryShader bind_geometry_shader(Shader const& shader, Machine const& machine)
 {
-    return make_program<GeometryProgramOn, GeometryProgram>(shader, machine);
+    return bind_shader<GeometryProgramOn, GeometryProgram>(shader, machine);
 }
 
 } // namespace tessemu

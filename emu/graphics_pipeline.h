@@ -9,6 +9,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "emu/domain_points.h"
 #include "emu/domain_shader.h"
 #include "emu/geometry_shader.h"
 #include "emu/graphics_state.h"
@@ -24,17 +25,26 @@
 
 namespace tessemu {
 
-/// Programs and state. Hull and domain shader are both there or both absent (R3).
+/// Shaders and state. Hull and domain shader are both there or both absent (R3).
 struct GraphicsPipelineDesc {
-    std::shared_ptr<VertexProgram const> vertex_shader;
-    std::shared_ptr<HullProgram const> hull_shader;
-    std::shared_ptr<DomainProgram const> domain_shader;
-    std::shared_ptr<GeometryProgram const> geometry_shader;
+    VertexShader vertex_shader;
+    HullShader hull_shader;
+    DomainShader domain_shader;
+    DomainEpilog domain_epilog; ///< the domain shader's end, where it is compiled apart from it
+    GeometryShader geometry_shader;
     std::optional<StreamOutputDesc> stream_output;
-    std::shared_ptr<PixelProgram const> pixel_shader; ///< none: depth and stencil only (R5)
+    PixelShader pixel_shader; ///< none: depth and stencil only (R5)
     Partitioning partitioning = Partitioning::FractionalOdd;
     OutputPrimitive output_primitive = OutputPrimitive::TriangleCw;
     int input_control_points = 0; ///< of the patch topology that is drawn
+
+    /// What the domain shader hands on, by its epilog if it has one.
+    OutputLayout domain_output() const
+    {
+        return domain_epilog ? domain_epilog->output() : domain_shader->output();
+    }
+    /// Buffers and textures of the domain shader and its epilog.
+    std::vector<ResourceInfo> domain_resources() const;
 };
 
 class GraphicsPipeline {
@@ -82,6 +92,7 @@ struct DrawMistakes {
     static constexpr std::int64_t kNone = -1;
     std::int64_t other_factor = kNone;     ///< its edge 0 gets a tess factor two larger
     std::int64_t reversed_winding = kNone; ///< its triangles are turned over
+    bool inclusive_edges = false; ///< of all triangles: a sample on an edge belongs to both
 };
 
 struct DrawOptions {
@@ -97,5 +108,11 @@ struct DrawOptions {
 DrawStatistics draw(GraphicsPipeline const& pipeline, DrawCall const& call,
                     RasterTarget const* raster, PatchVisitor const& visit,
                     ThreadPool const& threads, DrawOptions const& options = {});
+
+/// Whether anything reaches the rasterizer (R5).
+bool rasterization_is_on(GraphicsPipelineDesc const& pipeline, RasterTarget const* target);
+/// What a draw needs of its pipeline and targets. Throws LimitError or Error.
+void check_draw(GraphicsPipelineDesc const& pipeline, DrawCall const& call,
+                RasterTarget const* target, std::size_t stream_output_buffers);
 
 } // namespace tessemu

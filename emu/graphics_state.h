@@ -260,8 +260,6 @@ struct RasterTarget {
     BlendState blend = {};
     bool depth_read_only = false, stencil_read_only = false; ///< of the view (R139)
     CoverageCounts* coverage = nullptr;                      ///< counted where given
-    /// A mistake, for tests of checkers: a sample on an edge belongs to both triangles.
-    bool inclusive_edges = false;
 
     int samples() const;
 };

@@ -26,7 +26,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "emu/machine.h"
+#include "emu/bound_shader.h"
 #include "emu/statistics.h"
 #include "emu/tessellator.h"
 
@@ -58,16 +58,17 @@ class HullProgram {
 public:
     virtual ~HullProgram() = default;
     virtual TessellatorDomain domain() const = 0;
-    virtual int input_floats() const = 0;         ///< of one control point
-    virtual int input_fetch_floats() const = 0;   ///< of one fetch, see ControlPoints
-    virtual int control_points() const = 0;       ///< output control points
+    virtual int input_floats() const = 0;       ///< of one control point
+    virtual int input_fetch_floats() const = 0; ///< of one fetch, see ControlPoints
+    /// Output control points, and fork instances with a register each.
+    virtual int control_points(ShaderBinding const& binding) const = 0;
+    virtual int patch_constants(ShaderBinding const& binding) const = 0;
     virtual int control_point_floats() const = 0; ///< of one output control point
     virtual int control_point_fetch_floats() const = 0;
-    virtual int patch_constants() const = 0;
     virtual int patch_constant_floats() const = 0;
     virtual float max_tess_factor() const = 0; ///< [maxtessfactor], 64 where not declared (R53)
-    virtual std::vector<ResourceInfo> resources() const = 0;
-    virtual void run(HullBatch const& batch, StageCounters& counters,
+    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
+    virtual void run(ShaderBinding const& binding, HullBatch const& batch, StageCounters& counters,
                      StageBuffers const& buffers) const = 0;
 };
 
@@ -81,28 +82,37 @@ template <class Shader, class T> class HullProgramOn final : public HullProgram 
     static_assert(kConst <= 4, "a patch constant is one register of four scalars");
 
 public:
-    HullProgramOn(Shader const& shader, SiteState const& sites) : shader_(shader), sites_(sites) {}
     TessellatorDomain domain() const override { return Shader::kDomain; }
     int input_floats() const override { return int(kIn); }
     int input_fetch_floats() const override { return ControlPoints<Input>::kFetchScalars; }
     int control_point_fetch_floats() const override { return ControlPoints<Point>::kFetchScalars; }
-    int control_points() const override { return shader_.control_points(); }
+    int control_points(ShaderBinding const& binding) const override
+    {
+        return binding.as<Shader>().control_points();
+    }
     int control_point_floats() const override { return int(kOut); }
-    int patch_constants() const override { return shader_.patch_constants(); }
+    int patch_constants(ShaderBinding const& binding) const override
+    {
+        return binding.as<Shader>().patch_constants();
+    }
     int patch_constant_floats() const override { return int(kConst); }
     float max_tess_factor() const override
     {
         if constexpr (requires { Shader::kMaxTessFactor; }) return Shader::kMaxTessFactor;
         return tessemu::kMaxTessFactor;
     }
-    std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
+    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
+    {
+        return resources_of(binding.as<Shader>());
+    }
 
-    void run(HullBatch const& b, StageCounters& counters,
+    void run(ShaderBinding const& binding, HullBatch const& b, StageCounters& counters,
              StageBuffers const& buffers) const override
     {
-        StageScope const scope(counters, buffers, sites_);
+        Shader const& shader = binding.as<Shader>();
+        StageScope const scope(counters, buffers, binding.sites());
         int const n = b.input_control_points;
-        int const points = shader_.control_points(), constants = shader_.patch_constants();
+        int const points = shader.control_points(), constants = shader.patch_constants();
         std::vector<float> inputs(std::size_t(n) * kIn);
         for (std::size_t p = 0; p < b.patches; ++p) {
             for (std::size_t i = 0; i < std::size_t(n); ++i) {
@@ -117,16 +127,16 @@ public:
             ControlPoints<Constant> const forked(registers, constants);
 
             for_each_id(points, [&](IntLanes<N> id, int first, int active) {
-                Point const point = shader_.template control_point<T>(patch, input, id);
+                Point const point = shader.template control_point<T>(patch, input, id);
                 scatter(point, out, first, active);
             });
             for_each_id(constants, [&](IntLanes<N> id, int first, int active) {
-                Constant const c = shader_.template patch_constant<T>(patch, input, output, id);
+                Constant const c = shader.template patch_constant<T>(patch, input, output, id);
                 scatter(c, registers, first, active);
             });
             begin_group<T>(1);
             std::array<T, 6> const f =
-                shader_.template tess_factors<T>(patch, input, output, forked);
+                shader.template tess_factors<T>(patch, input, output, forked);
             for (std::size_t i = 0; i < 6; ++i) b.factors[p][i] = lanes_value(f[i]).raw[0];
 
             counters.input_fetches += input.fetches();
@@ -158,15 +168,22 @@ private:
             ++k;
         });
     }
-
-    Shader shader_;
-    SiteState sites_;
 };
 
-template <class Shader>
-std::unique_ptr<HullProgram> make_hull_program(Shader const& shader, Machine const& machine)
+class HullShader : public BoundShader<HullProgram> {
+public:
+    using BoundShader::BoundShader;
+    HullShader(BoundShader<HullProgram> shader) : BoundShader(std::move(shader)) {}
+    int control_points() const { return (*this)->control_points(binding()); }
+    int patch_constants() const { return (*this)->patch_constants(binding()); }
+    /// Of all output control points of a patch, and of all its patch constants.
+    int patch_floats() const { return control_points() * (*this)->control_point_floats(); }
+    int constant_floats() const { return patch_constants() * (*this)->patch_constant_floats(); }
+};
+
+template <class Shader> HullShader bind_hull_shader(Shader const& shader, Machine const& machine)
 {
-    return make_program<HullProgramOn, HullProgram>(shader, machine);
+    return bind_shader<HullProgramOn, HullProgram>(shader, machine);
 }
 
 } // namespace tessemu

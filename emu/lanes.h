@@ -139,8 +139,7 @@ template <int N> struct Lanes {
     friend Lanes sqrt(Lanes a)
     {
 #if defined(__AVX512F__)
-        if constexpr (N == 16)
-            return Raw(_mm512_maskz_sqrt_ps(__mmask16(-1), __m512(a.raw)));
+        if constexpr (N == 16) return Raw(_mm512_maskz_sqrt_ps(__mmask16(-1), __m512(a.raw)));
 #endif
 #if defined(__AVX__)
         if constexpr (N == 8) return Raw(_mm256_sqrt_ps(__m256(a.raw)));
@@ -164,7 +163,10 @@ template <int N> struct Lanes {
         for (int i = 0; i < N; ++i) r.raw[i] = __builtin_floorf(a.raw[i]);
         return r;
     }
-    friend Lanes abs(Lanes a) { return Raw(Bits(a.raw) & 0x7fffffff); }
+    friend Lanes abs(Lanes a)
+    {
+        return Raw(Bits(a.raw) & 0x7fffffff);
+    }
     // One instruction orders as HLSL does, -0 below +0 too, once signalling NaNs are quiet.
     friend Lanes min(Lanes a, Lanes b)
     {
@@ -199,8 +201,7 @@ template <int N> struct Lanes {
 #if defined(__FMA__)
         if constexpr (N == 8)
             return Raw(_mm256_fmadd_ps(__m256(a.raw), __m256(b.raw), __m256(c.raw)));
-        if constexpr (N == 4)
-            return Raw(_mm_fmadd_ps(__m128(a.raw), __m128(b.raw), __m128(c.raw)));
+        if constexpr (N == 4) return Raw(_mm_fmadd_ps(__m128(a.raw), __m128(b.raw), __m128(c.raw)));
 #endif
         Lanes r;
         for (int i = 0; i < N; ++i) r.raw[i] = fused_multiply_add(a.raw[i], b.raw[i], c.raw[i]);
@@ -224,5 +225,7 @@ inline constexpr int kNativeLanes = 8;
 #else
 inline constexpr int kNativeLanes = 4;
 #endif
+/// Of the fixed-function stages, whose tables are laid out for 8 or 16.
+inline constexpr int kRasterLanes = kNativeLanes == 16 ? 16 : 8;
 
 } // namespace tessemu

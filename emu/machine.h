@@ -1,4 +1,4 @@
-// The machine a shader runs on: lanes, contraction, and the two scalar types that it is compiled for.
+// The machine a shader runs on: lanes, contraction, and the two scalars that it is compiled for.
 //
 // Fast: the widest lanes that the build's instruction set fills, products and sums apart. Checking:
 // four lanes, the fewest that derivatives need, where each sum asks at run time whether it takes
@@ -13,6 +13,7 @@
 #include "emu/memory.h"
 
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 namespace tessemu {
@@ -43,26 +44,36 @@ inline constexpr int kBuiltLanes[] = {kNativeLanes};
 /// Throws Error that names the build option for lanes that the build does not hold.
 void check_lanes(int lanes);
 
-/// A stage's program: the shader compiled for the machine's scalar.
-template <template <class, class> class Program, class Interface, class Shader>
-std::unique_ptr<Interface> make_program(Shader const& shader, Machine const& machine)
+namespace detail {
+/// Code has no state: one object for the process, which nobody owns.
+template <class Interface, class Program> std::shared_ptr<Interface const> only_program()
+{
+    static Program const program{};
+    return {std::shared_ptr<void>(), &program};
+}
+} // namespace detail
+
+/// A stage's program: the shader type compiled for the machine's scalar, made once a process.
+/// Throws Error for lanes that the build does not hold.
+template <class Interface, class Shader, template <class, class> class ProgramOn>
+std::shared_ptr<Interface const> program_on_machine(Machine const& machine)
 {
     check_lanes(machine.lanes);
-    auto const on = [&]<class T>(std::type_identity<T>) -> std::unique_ptr<Interface> {
-        return std::make_unique<Program<Shader, T>>(shader, machine.sites());
+    auto const on = []<class Fast, class Check>(bool checking, Fast, Check) {
+        return checking ? detail::only_program<Interface, ProgramOn<Shader, typename Check::type>>()
+                        : detail::only_program<Interface, ProgramOn<Shader, typename Fast::type>>();
     };
     bool const checking = machine.checking || machine.contraction != Contraction::None;
 #if defined(TESSEMU_ALL_LANES)
-    switch (machine.lanes) {
-    case 4:
-        return checking ? on(std::type_identity<CheckLanes<4>>()) : on(std::type_identity<FastLanes<4>>());
-    case 8:
-        return checking ? on(std::type_identity<CheckLanes<8>>()) : on(std::type_identity<FastLanes<8>>());
-    default:
-        return checking ? on(std::type_identity<CheckLanes<16>>()) : on(std::type_identity<FastLanes<16>>());
-    }
+    if (machine.lanes == 4)
+        return on(checking, std::type_identity<FastLanes<4>>(),
+                  std::type_identity<CheckLanes<4>>());
+    if (machine.lanes == 8)
+        return on(checking, std::type_identity<FastLanes<8>>(),
+                  std::type_identity<CheckLanes<8>>());
+    return on(checking, std::type_identity<FastLanes<16>>(), std::type_identity<CheckLanes<16>>());
 #else
-    return checking ? on(std::type_identity<CheckScalar>()) : on(std::type_identity<FastScalar>());
+    return on(checking, std::type_identity<FastScalar>(), std::type_identity<CheckScalar>());
 #endif
 }
 

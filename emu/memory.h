@@ -18,6 +18,8 @@
 
 namespace tessemu {
 
+class ExpressionGraph;
+
 enum class ResourceKind { Vertex, Index, ControlPoint, PatchConstant, Buffer, Texture, Shared };
 
 /// "vertex", "index", "control_point", "patch_constant", "buffer", "texture", "shared"
@@ -33,8 +35,8 @@ struct FetchStatistics {
     friend bool operator==(FetchStatistics const&, FetchStatistics const&) = default;
 };
 
-/// D3D11 gives a stage 128 shader resource slots; no shader here needs more than these.
-inline constexpr int kBufferSlots = 8;
+/// Shader resource slots of a stage, as in Direct3D 11.
+inline constexpr int kBufferSlots = 128;
 
 /// Elements of a resource that were read, shared by all threads of a draw.
 class TouchedElements {
@@ -70,8 +72,8 @@ private:
 
 /// One thread's counter of one buffer slot.
 struct FetchSlot {
-    std::uint64_t count = 0, written = 0;
-    TouchedElements* touched = nullptr;
+    std::uint64_t count, written;
+    TouchedElements* touched;
 };
 
 /// A buffer bound to a slot: what a stage reports its fetches under.
@@ -84,14 +86,21 @@ struct ResourceInfo {
 };
 
 namespace detail {
+/// The counter of a slot; null outside a stage, and for a slot that the shader did not name among
+/// its resources.
+inline FetchSlot* bound_slot(int slot)
+{
+    return std::uint32_t(slot) < execution.buffer_slots ? execution.buffers + slot : nullptr;
+}
+
 template <class T> void count_fetch(int slot, std::int32_t index, std::size_t size)
 {
     if constexpr (ScalarTraits<T>::kCounted) {
         execution.features |= kFetches;
-        if (!execution.buffers) return;
-        FetchSlot& s = execution.buffers[slot];
-        s.count += execution.active_lanes;
-        if (s.touched && std::size_t(index) < size) s.touched->mark(std::size_t(index));
+        FetchSlot* const s = bound_slot(slot);
+        if (!s) return;
+        s->count += execution.active_lanes;
+        if (s->touched && std::size_t(index) < size) s->touched->mark(std::size_t(index));
     }
 }
 /// Neighbouring elements for neighbouring lanes, none out of range: a vector load.
@@ -107,14 +116,14 @@ void count_fetch(int slot, IntLanes<N> index, std::size_t size, bool run = false
 {
     if constexpr (ScalarTraits<T>::kCounted) {
         execution.features |= kFetches;
-        if (!execution.buffers) return;
-        FetchSlot& s = execution.buffers[slot];
-        s.count += execution.active_lanes;
-        if (!s.touched) return;
-        if (run) return s.touched->mark_run(std::size_t(index.raw[0]), execution.active_bits);
+        FetchSlot* const s = bound_slot(slot);
+        if (!s) return;
+        s->count += execution.active_lanes;
+        if (!s->touched) return;
+        if (run) return s->touched->mark_run(std::size_t(index.raw[0]), execution.active_bits);
         for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
             auto const i = std::size_t(index.raw[std::countr_zero(bits)]);
-            if (i < size) s.touched->mark(i);
+            if (i < size) s->touched->mark(i);
         }
     }
 }
@@ -124,16 +133,21 @@ void count_fetch(int slot, IntLanes<N> index, std::size_t size, bool run = false
 template <class E> class Buffer {
 public:
     Buffer() = default;
-    Buffer(std::span<E const> elements, int slot, std::string name)
+    /// Into a `recording` a shader that runs on Graph records its loads, known by slot and index.
+    /// It goes on with the value where there is none, and where E is an integer.
+    Buffer(std::span<E const> elements, int slot, std::string name,
+           ExpressionGraph* recording = nullptr)
         : elements_(elements),
           slot_(slot),
-          name_(std::move(name))
+          name_(std::move(name)),
+          recording_(recording)
     {
         assert(slot >= 0 && slot < kBufferSlots);
     }
 
     std::span<E const> elements() const { return elements_; }
     int slot() const { return slot_; }
+    ExpressionGraph* recording() const { return recording_; }
     ResourceInfo info() const
     {
         return {name_, ResourceKind::Buffer, slot_, elements_.size(), sizeof(E)};
@@ -143,6 +157,7 @@ private:
     std::span<E const> elements_;
     int slot_ = 0;
     std::string name_;
+    ExpressionGraph* recording_ = nullptr;
 };
 
 /// buffer[i], the same element for every invocation; 0 when i is out of range.
@@ -151,6 +166,12 @@ template <class T, class E> auto load(Buffer<E> const& buffer, std::int32_t i)
     using Result = std::conditional_t<std::floating_point<E>, T, std::int32_t>;
     std::span<E const> const e = buffer.elements();
     detail::count_fetch<T>(buffer.slot(), i, e.size());
+    if constexpr (RecordingScalar<T>) {
+        if (buffer.recording()) {
+            T const loaded = T::load(*buffer.recording(), buffer.slot(), i);
+            if constexpr (std::floating_point<E>) return loaded;
+        }
+    }
     E const value = std::size_t(i) < e.size() ? e[std::size_t(i)] : E(0);
     if constexpr (std::floating_point<E>)
         return Result(storage_of<T>(value));
@@ -212,6 +233,13 @@ public:
     {
     }
 
+    /// For a recording: records without values; a fetch gives the nodes that stand for it.
+    ControlPoints(ExpressionGraph& recording, int count) requires(RecordingScalar<T>)
+        : recording_{&recording, T::new_view(recording)},
+          count_(count)
+    {
+    }
+
     static constexpr int kScalars = scalar_count<P>();
     static constexpr std::size_t kRecordBytes = std::size_t(kScalars) * sizeof(storage_of<T>);
 
@@ -226,6 +254,8 @@ public:
             P p{};
             for_each_scalar(p, [&](auto& s) { s = T(1.0, sink_); });
             return p;
+        } else if constexpr (RecordingScalar<T>) {
+            return recorded<P>(i * kScalars);
         } else {
             return load_record<P>(memory_ + i * kScalars);
         }
@@ -261,6 +291,8 @@ public:
         if constexpr (ScalarTraits<T>::kTally) {
             if (fetch_sink_) ++*fetch_sink_;
             return {T(1.0, sink_), T(1.0, sink_), T(1.0, sink_)};
+        } else if constexpr (RecordingScalar<T>) {
+            return recorded<float3<T>>(i * kScalars + 3 * k);
         } else {
             return load_record<float3<T>>(memory_ + i * kScalars + 3 * k);
         }
@@ -290,6 +322,18 @@ public:
     }
 
 private:
+    /// Nodes for the scalars from `first` on; without a recording their values.
+    template <class V> V recorded(int first) const
+    {
+        if (!recording_.graph) return load_record<V>(memory_ + first);
+        V v{};
+        for_each_scalar(v, [&](T& s) {
+            s = T::fetch(*recording_.graph, recording_.view, first / kFetchScalars,
+                         first % kFetchScalars);
+            ++first;
+        });
+        return v;
+    }
     constexpr void mark(std::int32_t unit) const
     {
         touched_[std::size_t(unit) / 64 % touched_.size()] |= std::uint64_t(1) << (unit % 64);
@@ -305,6 +349,12 @@ private:
     storage_of<T> const* memory_ = nullptr;
     FlopCount* sink_ = nullptr;           // of a tally
     std::uint64_t* fetch_sink_ = nullptr; // of a tally
+    struct NoRecording {};
+    struct Recording {
+        ExpressionGraph* graph = nullptr;
+        int view = 0;
+    };
+    [[no_unique_address]] std::conditional_t<RecordingScalar<T>, Recording, NoRecording> recording_;
     int count_ = 0;
     mutable std::uint64_t fetches_ = 0;
     // At most 128 patch constants; 32 records of at most 32 vectors.

@@ -3,7 +3,7 @@
 
 namespace tessemu {
 
-PixelShaderCost PixelProgram::probe() const
+PixelShaderCost PixelProgram::probe(ShaderBinding const& binding) const
 {
     constexpr std::size_t kGroup = 16; // whole groups are read and written
     float zeros[kGroup] = {}, colors[kMaxRenderTargets * 4][kGroup], depth[kGroup];
@@ -12,7 +12,8 @@ PixelShaderCost PixelProgram::probe() const
     float* rows[kMaxRenderTargets * 4];
     for (std::size_t i = 0; i < std::size(rows); ++i) rows[i] = colors[i];
     StageCounters counters;
-    run({1,
+    run(binding,
+        {1,
          {zeros, zeros, zeros, zeros},
          attributes.data(),
          no,

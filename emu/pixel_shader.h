@@ -22,9 +22,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "emu/bound_shader.h"
 #include "emu/derivatives.h"
 #include "emu/graphics_state.h"
-#include "emu/machine.h"
 #include "emu/statistics.h"
 
 #include <algorithm>
@@ -75,11 +75,11 @@ public:
     virtual ~PixelProgram() = default;
     PixelShaderInfo const& info() const { return info_; }
     int input_floats() const { return int(info_.interpolation.size()); }
-    virtual std::vector<ResourceInfo> resources() const = 0;
-    virtual void run(FragmentBatch const& batch, StageCounters& counters,
-                     StageBuffers const& buffers) const = 0;
+    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
+    virtual void run(ShaderBinding const& binding, FragmentBatch const& batch,
+                     StageCounters& counters, StageBuffers const& buffers) const = 0;
     /// Runs one invocation on zeros.
-    PixelShaderCost probe() const;
+    PixelShaderCost probe(ShaderBinding const& binding) const;
 
 protected:
     PixelShaderInfo info_;
@@ -115,7 +115,7 @@ template <class Shader, class T> class PixelProgramOn final : public PixelProgra
     }
 
 public:
-    PixelProgramOn(Shader const& shader, SiteState const& sites) : shader_(shader), sites_(sites)
+    PixelProgramOn()
     {
         describe_inputs();
         info_.color_targets = kColors;
@@ -130,15 +130,18 @@ public:
             if (i == Interpolation::LinearSample || i == Interpolation::LinearNoperspectiveSample)
                 info_.sample_frequency = true; // R114
     }
-    std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
+    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
+    {
+        return resources_of(binding.as<Shader>());
+    }
 
-    void run(FragmentBatch const& b, StageCounters& counters,
+    void run(ShaderBinding const& binding, FragmentBatch const& b, StageCounters& counters,
              StageBuffers const& buffers) const override
     {
         if constexpr (ScalarTraits<T>::kSites)
-            run_fragments(b, counters, buffers);
+            run_fragments(binding, b, counters, buffers);
         else
-            run_flattened(b, counters, buffers);
+            run_flattened(binding, b, counters, buffers);
     }
 
 private:
@@ -147,16 +150,17 @@ private:
     [[gnu::flatten]]
 #endif
     void
-    run_flattened(FragmentBatch const& b, StageCounters& counters,
+    run_flattened(ShaderBinding const& binding, FragmentBatch const& b, StageCounters& counters,
                   StageBuffers const& buffers) const
     {
-        run_fragments(b, counters, buffers);
+        run_fragments(binding, b, counters, buffers);
     }
 
-    void run_fragments(FragmentBatch const& b, StageCounters& counters,
-                       StageBuffers const& buffers) const
+    void run_fragments(ShaderBinding const& binding, FragmentBatch const& b,
+                       StageCounters& counters, StageBuffers const& buffers) const
     {
-        StageScope const scope(counters, buffers, sites_);
+        Shader const& shader = binding.as<Shader>();
+        StageScope const scope(counters, buffers, binding.sites());
         for (std::size_t first = 0; first < b.count; first += N) {
             std::uint32_t const active = active_lanes(b, first);
             if (active == 0) continue; // helpers only
@@ -172,7 +176,7 @@ private:
             Input input{};
             int k = 0;
             for_each_scalar(input, [&](auto& s) { s = lanes(b.attributes[k++]); });
-            Output const out = shader_(pixel, input);
+            Output const out = shader(pixel, input);
             k = 0;
             for_each_color(out, [&](float4<T> const& color) {
                 for_each_scalar(color,
@@ -214,15 +218,18 @@ private:
             info_.interpolation.assign(std::size_t(scalar_count<Input>()), Interpolation::Linear);
         }
     }
-
-    Shader shader_;
-    SiteState sites_;
 };
 
-template <class Shader>
-std::unique_ptr<PixelProgram> make_pixel_program(Shader const& shader, Machine const& machine)
+class PixelShader : public BoundShader<PixelProgram> {
+public:
+    using BoundShader::BoundShader;
+    PixelShader(BoundShader<PixelProgram> shader) : BoundShader(std::move(shader)) {}
+    PixelShaderCost probe() const { return (*this)->probe(binding()); }
+};
+
+template <class Shader> PixelShader bind_pixel_shader(Shader const& shader, Machine const& machine)
 {
-    return make_program<PixelProgramOn, PixelProgram>(shader, machine);
+    return bind_shader<PixelProgramOn, PixelProgram>(shader, machine);
 }
 
 } // namespace tessemu

@@ -15,7 +15,7 @@ namespace {
 // coordinates fit a 32-bit integer with room.
 constexpr float kBandPixels = 16384.0f;
 
-constexpr int N = kNativeLanes;
+constexpr int N = kRasterLanes;
 using F = Lanes<N>;
 using I = IntLanes<N>;
 

@@ -3,17 +3,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "emu/geometry.h"
+#include "emu/front_end.h"
 #include "emu/rasterizer.h"
 #include "emu/triangle_stream.h"
 
-#include <cmath>
+#include <mutex>
+#include <optional>
 
 namespace tessemu {
 
 // A chunk and its primitives, or its shaded fragments, by tile.
 struct DrawMemory::Parts {
-    struct Chunk : GeometryChunk {
+    struct Chunk : FrontEndChunk {
         FragmentBins fragments;
         std::uint64_t fragment_count = 0;
         std::vector<std::uint32_t> bin_start, bin_primitives; // by tile, in submission order
@@ -21,8 +22,40 @@ struct DrawMemory::Parts {
     };
     std::vector<Chunk> wave;
     std::vector<float> shaded_vertices;
-    std::mutex idle_mutex;
-    std::vector<std::unique_ptr<GeometryChunk>> idle; // of threads that stream
+
+    // What a thread owns while it works on a chunk.
+    struct Worker {
+        FrontEndChunk chunk; // of a chunk that streams
+        TriangleStream stream;
+        std::optional<TessellatorCache> patterns;
+        TessellatorState state;
+        std::uint64_t draw = 0; // that the stream is bound to
+    };
+    std::unique_ptr<Worker> take(TessellatorState const& state)
+    {
+        std::unique_ptr<Worker> w;
+        {
+            std::scoped_lock const lock(mutex);
+            if (!idle.empty()) {
+                w = std::move(idle.back());
+                idle.pop_back();
+            }
+        }
+        if (!w) w = std::make_unique<Worker>();
+        if (!w->patterns || w->state != state) {
+            w->patterns.emplace(state);
+            w->state = state;
+        }
+        return w;
+    }
+    void give(std::unique_ptr<Worker> w)
+    {
+        std::scoped_lock const lock(mutex);
+        idle.push_back(std::move(w));
+    }
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Worker>> idle;
+    std::uint64_t draws = 0;
 };
 
 using Chunk = DrawMemory::Parts::Chunk;
@@ -31,132 +64,26 @@ using Chunk = DrawMemory::Parts::Chunk;
 /// or fragments by tile, on any thread; a wave of chunks is drawn tile by tile.
 class RasterStages {
 public:
-    // `triangles`: nothing else reaches the rasterizer.
+    // \param triangles  whether nothing but triangles will reach the rasterizer
     RasterStages(RasterTarget const& target, GraphicsPipelineDesc const& desc, OutputLayout layout,
-                 bool triangles)
-        : target_(with_all_viewports(target, desc)),
-          buffers_(desc.pixel_shader ? desc.pixel_shader->resources()
-                                     : std::vector<ResourceInfo>{}),
-          setup_{target_,
-                 {},
-                 desc.pixel_shader.get(),
-                 desc.pixel_shader ? desc.pixel_shader->probe() : PixelShaderCost{},
-                 layout,
-                 buffers_},
-          assembler_(target_,
-                     desc.pixel_shader
-                         ? std::span<Interpolation const>(desc.pixel_shader->info().interpolation)
-                         : std::span<Interpolation const>(),
-                     layout)
-    {
-        Rect const all = extent();
-        for (std::size_t i = 0; i < target_.viewports.size(); ++i) {
-            Viewport const& v = target_.viewports[i];
-            // Implicit scissor: sums first, then floor (R98).
-            Rect r =
-                all.intersect({int(std::floor(v.x)), int(std::floor(v.y)),
-                               int(std::floor(v.x + v.width)), int(std::floor(v.y + v.height))});
-            if (target_.rasterizer.scissor_enable)
-                r = r.intersect(i < target_.scissors.size() ? target_.scissors[i] : Rect{});
-            setup_.bounds.push_back(r);
-        }
-        tiles_x_ = (all.right + kTileSize - 1) >> kTileShift;
-        tiles_y_ = (all.bottom + kTileSize - 1) >> kTileShift;
-        streams_ = TriangleStream::supports(setup_, triangles);
-    }
+                 bool triangles, DrawMistakes const& mistakes);
     RasterStages(RasterStages const&) = delete;
     RasterStages& operator=(RasterStages const&) = delete;
 
     bool streams() const { return streams_; }
 
     // Assembles a chunk and sorts its primitives into tiles.
-    void assemble(GeometryStages const& stages, Chunk& c) const
-    {
-        assembler_.project(c.shaded.data(), c.stride, c.stride, c.gs_viewport, c.assembled);
-        stages.for_each_primitive(c, [&](std::uint32_t const* v, int n, std::int32_t id,
-                                         std::uint8_t viewport) {
-            assembler_.assemble(c.assembled, v, n, id, viewport, c.counters.assembly, c.primitives);
-        });
-        bin(c);
-    }
+    void assemble(FrontEnd const& stages, Chunk& c) const;
 
     // Turns primitives into shaded fragments by tile. Only they and the counts stay in `slot`.
-    void stream(GeometryStages const& stages, AssembledPrimitives const& primitives,
+    void stream(FrontEnd const& stages, AssembledPrimitives const& primitives,
                 float const* shaded_vertices, std::size_t first, std::size_t count, Chunk& slot,
-                DrawMemory::Parts& memory)
-    {
-        Worker w = take_worker(memory);
-        GeometryChunk& c = *w.chunk;
-        w.stream->begin(c.assembled, slot.fragments);
-        if (stages.tessellates()) {
-            stages.run_by_patch(c, primitives, shaded_vertices, first, count, [&](std::size_t p) {
-                std::size_t const points = (c.patterns[p]->patch.points() + 15) / 16 * 16;
-                assembler_.project(c.shaded.data(), c.stride, points, {}, c.assembled);
-                w.stream->add_patch(*c.patterns[p], std::int32_t(first + p), c.counters.assembly);
-            });
-        } else {
-            stages.run(c, primitives, shaded_vertices, first, count);
-            assembler_.project(c.shaded.data(), c.stride, c.stride, {}, c.assembled);
-            stages.for_each_primitive(
-                c, [&](std::uint32_t const* v, int, std::int32_t id, std::uint8_t) {
-                    w.stream->add_triangle(v, id, c.counters.assembly);
-                });
-        }
-        w.stream->end();
-        slot.first = first;
-        slot.count = count;
-        slot.counters = c.counters;
-        slot.fragment_count = w.stream->fragments();
-        std::scoped_lock const lock(memory.idle_mutex);
-        memory.idle.push_back(std::move(w.chunk));
-        idle_.push_back(std::move(w.stream));
-    }
+                DrawMemory::Parts& memory);
 
-    void rasterize(std::span<Chunk> wave, ThreadPool const& threads)
-    {
-        auto const tiles = std::size_t(tiles_x_ * tiles_y_);
-        std::vector<std::size_t> busy;
-        for (std::size_t t = 0; t < tiles; ++t)
-            for (Chunk const& c : wave)
-                if (c.bin_start[t] != c.bin_start[t + 1]) {
-                    busy.push_back(t);
-                    break;
-                }
-        std::vector<RasterCounters> tile_counters(busy.size());
-        threads.parallel_for(busy.size(), [&](std::size_t i) {
-            std::size_t const t = busy[i];
-            int const x = int(t) % tiles_x_ << kTileShift, y = int(t) / tiles_x_ << kTileShift;
-            DenormalMode const flush(DenormalMode::Flush);
-            TileRasterizer raster(setup_, {x, y, x + kTileSize, y + kTileSize}, tile_counters[i]);
-            for (Chunk const& c : wave)
-                for (std::uint32_t k = c.bin_start[t]; k < c.bin_start[t + 1]; ++k)
-                    raster.draw(c.assembled, c.primitives[c.bin_primitives[k]]);
-            raster.flush();
-        });
-        for (RasterCounters const& c : tile_counters) counters += c;
-    }
+    void rasterize(std::span<Chunk> wave, ThreadPool const& threads);
 
     // The depth test of a wave's fragments. Returns how many there were.
-    std::uint64_t merge(std::span<Chunk> wave, ThreadPool const& threads)
-    {
-        std::vector<std::uint64_t> passed(std::size_t(tiles_x_ * tiles_y_));
-        threads.parallel_for(passed.size(), [&](std::size_t t) {
-            for (std::size_t i = 0; i < wave.size(); ++i) {
-                if (i + 1 < wave.size()) wave[i + 1].fragments.prefetch(t);
-                if (!wave[i].fragments.empty(t))
-                    passed[t] += merge_fragments(target_, wave[i].fragments, t);
-            }
-        });
-        std::uint64_t all = 0;
-        for (std::uint64_t n : passed) all += n;
-        counters.passed_samples += all;
-        counters.pixel.invocations += all; // shading is pure: what fails might never have run
-        counters.pixel.flops += setup_.pixel_cost.flops * all;
-        std::uint64_t fragments = 0;
-        for (Chunk const& c : wave) fragments += c.fragment_count;
-        counters.covered_samples += fragments;
-        return fragments;
-    }
+    std::uint64_t merge(std::span<Chunk> wave, ThreadPool const& threads);
 
     StageBuffers const& buffers() const { return buffers_; }
     RasterTarget const& target() const { return target_; }
@@ -165,74 +92,12 @@ public:
 
 private:
     // A geometry shader may choose any of 16; those not set are all zeros (R97, R99).
-    static RasterTarget with_all_viewports(RasterTarget t, GraphicsPipelineDesc const& desc)
-    {
-        t.viewports.resize(desc.geometry_shader ? kMaxViewports
-                                                : std::max<std::size_t>(1, t.viewports.size()));
-        return t;
-    }
+    static RasterTarget with_all_viewports(RasterTarget t, GraphicsPipelineDesc const& desc);
 
-    Rect extent() const
-    {
-        for (ColorTarget const* c : target_.color)
-            if (c) return {0, 0, c->width(), c->height()};
-        if (target_.depth) return {0, 0, target_.depth->width(), target_.depth->height()};
-        if (target_.coverage) return {0, 0, target_.coverage->width, target_.coverage->height};
-        Viewport const& v = target_.viewports[0]; // nothing bound (R6)
-        auto const size = [](float to) {
-            return std::clamp(int(std::floor(to)), 0, ColorTarget::kMaxSize);
-        };
-        return {0, 0, size(v.x + v.width), size(v.y + v.height)};
-    }
-
-    struct Worker {
-        std::unique_ptr<GeometryChunk> chunk;
-        std::unique_ptr<TriangleStream> stream;
-    };
-    Worker take_worker(DrawMemory::Parts& memory)
-    {
-        Worker w;
-        {
-            std::scoped_lock const lock(memory.idle_mutex);
-            if (!memory.idle.empty()) {
-                w.chunk = std::move(memory.idle.back());
-                memory.idle.pop_back();
-            }
-            if (!idle_.empty()) {
-                w.stream = std::move(idle_.back());
-                idle_.pop_back();
-            }
-        }
-        if (!w.chunk) w.chunk = std::make_unique<GeometryChunk>();
-        if (!w.stream)
-            w.stream = std::make_unique<TriangleStream>(setup_, assembler_, tiles_x_, tiles_y_);
-        return w;
-    }
+    Rect extent() const;
 
     // Lists of primitives by tile, each in submission order (a counting sort).
-    void bin(Chunk& c) const
-    {
-        auto const tiles = std::size_t(tiles_x_ * tiles_y_);
-        int const samples = target_.samples();
-        bool const wide = target_.rasterizer.multisample_enable;
-        c.bin_entries.clear();
-        for (std::uint32_t i = 0; i < c.primitives.size(); ++i) {
-            AssembledPrimitive const& p = c.primitives[i];
-            Rect const r = primitive_bounds(c.assembled, p, samples, wide)
-                               .intersect(setup_.bounds[p.viewport]);
-            if (r.empty()) continue;
-            for (int ty = r.top >> kTileShift; ty <= (r.bottom - 1) >> kTileShift; ++ty)
-                for (int tx = r.left >> kTileShift; tx <= (r.right - 1) >> kTileShift; ++tx)
-                    c.bin_entries.emplace_back(std::uint32_t(ty * tiles_x_ + tx), i);
-        }
-        c.bin_start.assign(tiles + 1, 0);
-        for (auto const& [tile, primitive] : c.bin_entries) ++c.bin_start[tile + 1];
-        for (std::size_t t = 0; t < tiles; ++t) c.bin_start[t + 1] += c.bin_start[t];
-        c.bin_primitives.resize(c.bin_entries.size());
-        std::vector<std::uint32_t> at(c.bin_start.begin(), c.bin_start.end() - 1);
-        for (auto const& [tile, primitive] : c.bin_entries)
-            c.bin_primitives[at[tile]++] = primitive;
-    }
+    void bin(Chunk& c) const;
 
     RasterTarget target_;
     StageBuffers buffers_;
@@ -240,7 +105,6 @@ private:
     PrimitiveAssembler assembler_;
     int tiles_x_ = 0, tiles_y_ = 0;
     bool streams_ = false;
-    std::vector<std::unique_ptr<TriangleStream>> idle_; // of threads between chunks
 };
 
 } // namespace tessemu

@@ -241,7 +241,7 @@ void TileRasterizer::draw_area(Edges const& area, Weights const& weights, Rect p
                 I64x8 in = I64x8{} - 1;
                 for (int i = 0; i < area.count; ++i) {
                     Edge const& e = area.edge[i];
-                    int const least = e.top_left || setup_.target.inclusive_edges ? 0 : 1;
+                    int const least = e.top_left || setup_.inclusive_edges ? 0 : 1;
                     in &= (e(cx, cy) + step[i] >= least + I64x8{});
                 }
                 for (int l = 0; l < 8; ++l) covered[l / 4][l % 4] |= std::uint32_t(in[l] & 1) << s;
@@ -436,7 +436,7 @@ void TileRasterizer::shade_and_merge()
     batch.depth = depth_;
     batch.out_coverage = out_coverage_;
     batch.discard = discard_;
-    setup_.pixel_shader->run(batch, counters_.pixel, setup_.buffers);
+    setup_.pixel_shader.run(batch, counters_.pixel, setup_.buffers);
 
     RasterTarget const& target = setup_.target;
     int const colors = info_.color_targets;

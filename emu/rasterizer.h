@@ -39,11 +39,12 @@ Rect primitive_bounds(AssembledVertices const& vertices, AssembledPrimitive cons
 /// Targets of a draw, drawn into tile by tile.
 struct RasterSetup {
     RasterTarget const& target;
-    std::vector<Rect> bounds;         ///< per viewport: viewport, scissor and target (R98)
-    PixelProgram const* pixel_shader; ///< null: depth and stencil only
+    std::vector<Rect> bounds;        ///< per viewport: viewport, scissor and target (R98)
+    PixelShader const& pixel_shader; ///< none: depth and stencil only
     PixelShaderCost pixel_cost;
-    OutputLayout layout;              ///< of the vertices
+    OutputLayout layout; ///< of the vertices
     StageBuffers const& buffers;
+    bool inclusive_edges = false; ///< see DrawMistakes
 };
 
 /// Draws primitives into one tile. Make one per tile and wave; feed primitives in order; flush() at

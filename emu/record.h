@@ -228,6 +228,17 @@ template <class P, class S> constexpr P load_record(S const* memory)
     return p;
 }
 
+/// Record from arrays by component: scalar k at memory[k * stride].
+template <class P, class S> constexpr P load_column(S const* memory, std::size_t stride)
+{
+    P p{};
+    for_each_scalar(p, [&](auto& scalar) {
+        scalar = std::remove_cvref_t<decltype(scalar)>(*memory);
+        memory += stride;
+    });
+    return p;
+}
+
 /// select() on every scalar of two records.
 template <class M, class P> constexpr P select_record(M mask, P const& yes, P const& no)
 {

@@ -22,7 +22,8 @@ namespace tessemu {
 /// kLanes     invocations that advance in step
 /// kCounted   whether arithmetic and fetches are counted
 /// kTally     whether the type only counts, at compile time
-/// kSites     whether the type numbers its places in the source (mixed contraction)
+/// kSites     whether the type numbers its places in the source (emu/contracted.h)
+/// Recording  of a type that records its expression, and only there: what it records into
 template <class T> struct ScalarTraits;
 
 template <class T> using storage_of = typename ScalarTraits<T>::Storage;
@@ -34,6 +35,14 @@ template <class T>
 concept ShaderScalar = requires
 {
     typename ScalarTraits<T>::Storage;
+};
+
+/// A scalar that stands for an expression (emu/graph.h): views of memory ask it for new_view(),
+/// fetch() and load() in place of values.
+template <class T>
+concept RecordingScalar = requires
+{
+    typename ScalarTraits<T>::Recording;
 };
 
 template <std::floating_point F> struct ScalarTraits<F> {

@@ -87,7 +87,8 @@ StageCounters& StageCounters::operator+=(StageCounters const& o)
     input_fetches += o.input_fetches, input_touched += o.input_touched;
     constant_fetches += o.constant_fetches, constant_touched += o.constant_touched;
     output_fetches += o.output_fetches, output_touched += o.output_touched;
-    for (std::size_t i = 0; i < buffer_fetches.size(); ++i)
+    buffer_slots = std::max(buffer_slots, o.buffer_slots);
+    for (std::uint32_t i = 0; i < o.buffer_slots; ++i)
         buffer_fetches[i] += o.buffer_fetches[i], buffer_writes[i] += o.buffer_writes[i];
     shared_loads += o.shared_loads, shared_stores += o.shared_stores;
     shared_out_of_range += o.shared_out_of_range;
@@ -97,16 +98,17 @@ StageCounters& StageCounters::operator+=(StageCounters const& o)
 
 StageBuffers::StageBuffers(std::vector<ResourceInfo> resources) : resources_(std::move(resources))
 {
-    for (ResourceInfo const& r : resources_)
+    for (ResourceInfo const& r : resources_) {
         touched_.push_back(std::make_unique<TouchedElements>(r.elements));
+        slots_ = std::max(slots_, std::uint32_t(r.slot) + 1);
+    }
 }
 
-std::array<FetchSlot, kBufferSlots> StageBuffers::slots() const
+void StageBuffers::bind(FetchSlot* slots) const
 {
-    std::array<FetchSlot, kBufferSlots> s{};
+    std::fill_n(slots, slots_, FetchSlot{0, 0, nullptr});
     for (std::size_t i = 0; i < resources_.size(); ++i)
-        s[std::size_t(resources_[i].slot)].touched = touched_[i].get();
-    return s;
+        slots[resources_[i].slot].touched = touched_[i].get();
 }
 
 void StageBuffers::report(StageCounters const& counters, StageStatistics& out) const

@@ -8,6 +8,8 @@
 #include "emu/memory.h"
 #include "emu/stream_output.h"
 
+#include <algorithm>
+
 namespace tessemu {
 
 /// D3D11_QUERY_DATA_PIPELINE_STATISTICS (rules R156 to R164) and the hull shader's two phases.
@@ -62,6 +64,7 @@ struct StageCounters {
     std::uint64_t constant_fetches = 0, constant_touched = 0; ///< patch constants
     std::uint64_t output_fetches = 0, output_touched = 0; ///< a hull shader's own control points
     std::array<std::uint64_t, kBufferSlots> buffer_fetches{}, buffer_writes{};
+    std::uint32_t buffer_slots = 0; ///< the first ones, which the shader uses
     std::uint64_t shared_loads = 0, shared_stores = 0, shared_out_of_range = 0;
     std::uint32_t features = 0; ///< ShaderFeature bits that its shader showed
 
@@ -72,7 +75,10 @@ struct StageCounters {
 class StageBuffers {
 public:
     explicit StageBuffers(std::vector<ResourceInfo> resources);
-    std::array<FetchSlot, kBufferSlots> slots() const;
+    /// One past the highest slot in use.
+    std::uint32_t slots() const { return slots_; }
+    /// Makes the first slots() counters the buffers' and sets them to zero.
+    void bind(FetchSlot* slots) const;
     /// The buffers' rows of a stage's table.
     void report(StageCounters const& counters, StageStatistics& out) const;
     std::uint64_t written_bytes(StageCounters const& counters) const;
@@ -80,6 +86,7 @@ public:
 private:
     std::vector<ResourceInfo> resources_;
     std::vector<std::unique_ptr<TouchedElements>> touched_;
+    std::uint32_t slots_ = 0;
 };
 
 /// A programmable stage's door: flushes denormals (R9), points the thread's counters at the stage,
@@ -88,21 +95,23 @@ class StageScope {
 public:
     StageScope(StageCounters& counters, StageBuffers const& buffers, SiteState const& sites = {})
         : counters_(counters),
-          slots_(buffers.slots()),
           saved_(execution),
           saved_sites_(site_state)
     {
+        buffers.bind(slots_);
         execution = Execution{};
-        execution.buffers = slots_.data();
+        execution.buffers = slots_;
+        execution.buffer_slots = buffers.slots();
         site_state = sites;
     }
     ~StageScope()
     {
         counters_.flops += execution.take();
         counters_.features |= execution.features;
-        for (std::size_t i = 0; i < slots_.size(); ++i)
+        for (std::uint32_t i = 0; i < execution.buffer_slots; ++i)
             counters_.buffer_fetches[i] += slots_[i].count,
                 counters_.buffer_writes[i] += slots_[i].written;
+        counters_.buffer_slots = std::max(counters_.buffer_slots, execution.buffer_slots);
         execution = saved_;
         site_state = saved_sites_;
     }
@@ -112,7 +121,7 @@ public:
 private:
     DenormalMode flush_{DenormalMode::Flush};
     StageCounters& counters_;
-    std::array<FetchSlot, kBufferSlots> slots_;
+    FetchSlot slots_[kBufferSlots]; // those in use are set by the buffers
     Execution saved_;
     SiteState saved_sites_;
 };

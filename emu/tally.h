@@ -1,8 +1,8 @@
 // Tally: a scalar that counts operations in a constant expression, beside the shader that it
 // measures.
 //
-//     constexpr FlopCount cost = tally([](auto t) { return gregory_quad(...); });
-//     static_assert(cost.mul == 194);
+//     constexpr FlopCount cost = tally([](FlopCount* sink) { regular_quad<Tally>(...); });
+//     static_assert(cost.mul == 156);
 //
 // A constant carries no sink, and constant-with-constant counts nothing, as in a shader compiler. A
 // value rides along so that a branch is decided as the machine would decide it.

@@ -111,10 +111,10 @@ template <class T> struct TexelCount {
     {
         auto const& c = *static_cast<TexelCount*>(self);
         if constexpr (ScalarTraits<T>::kCounted) {
-            if (!execution.buffers || !c.active) return;
-            FetchSlot& s = execution.buffers[c.texture.slot()];
-            ++s.count;
-            if (s.touched) s.touched->mark(index);
+            FetchSlot* const s = detail::bound_slot(c.texture.slot());
+            if (!s || !c.active) return;
+            ++s->count;
+            if (s->touched) s->touched->mark(index);
         }
     }
 };

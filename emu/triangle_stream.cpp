@@ -10,12 +10,13 @@ namespace tessemu {
 bool TriangleStream::supports(RasterSetup const& setup, bool triangles)
 {
     RasterTarget const& t = setup.target;
-    if (!triangles || !setup.pixel_shader || t.samples() != 1 || t.coverage || t.inclusive_edges ||
-        t.color.size() != 1 || !t.color[0] || !t.depth || t.viewports.size() != 1)
+    if (!triangles || !setup.pixel_shader || t.samples() != 1 || t.coverage ||
+        setup.inclusive_edges || t.color.size() != 1 || !t.color[0] || !t.depth ||
+        t.viewports.size() != 1)
         return false;
     PixelShaderInfo const& ps = setup.pixel_shader->info();
-    bool const pure = setup.pixel_cost.features == 0 && !ps.writes_depth && !ps.writes_coverage && !ps.discards &&
-                      !ps.sample_frequency && ps.color_targets == 1;
+    bool const pure = setup.pixel_cost.features == 0 && !ps.writes_depth && !ps.writes_coverage &&
+                      !ps.discards && !ps.sample_frequency && ps.color_targets == 1;
     RasterizerState const& r = t.rasterizer;
     bool const plain = r.fill == FillMode::Solid && r.depth_bias == 0 &&
                        r.slope_scaled_depth_bias == 0 && setup.layout.clip_distances == 0 &&
@@ -32,26 +33,27 @@ bool TriangleStream::supports(RasterSetup const& setup, bool triangles)
            (f == Format::R8G8B8A8_UNORM || f == Format::R32G32B32A32_FLOAT);
 }
 
-TriangleStream::TriangleStream(RasterSetup const& setup, PrimitiveAssembler const& assembler,
-                               int tiles_x, int tiles_y)
-    : setup_(setup),
-      assembler_(assembler),
-      tiles_x_(tiles_x),
-      tiles_y_(tiles_y),
-      pitch_(int(setup.target.depth->pitch())),
-      attributes_(setup.pixel_shader->input_floats()),
-      bounds_(setup.bounds[0]),
-      wide_color_(setup.target.color[0]->format() == Format::R32G32B32A32_FLOAT),
-      cull_clockwise_(assembler.state().cull ==
-                      (assembler.front_is_clockwise() ? CullMode::Front : CullMode::Back)),
-      cull_counter_clockwise_(assembler.state().cull ==
-                              (assembler.front_is_clockwise() ? CullMode::Back : CullMode::Front)),
-      modes_(setup.pixel_shader->info().interpolation),
-      table_((std::size_t(kAttributes) + 3 * std::size_t(attributes_)) * kTableRow),
-      zeros_{},
-      attribute_storage_(std::size_t(attributes_) * kShadeRow)
+void TriangleStream::bind(RasterSetup const& setup, PrimitiveAssembler const& assembler,
+                          int tiles_x, int tiles_y)
 {
+    setup_ = &setup;
+    assembler_ = &assembler;
+    tiles_x_ = tiles_x;
+    tiles_y_ = tiles_y;
+    pitch_ = int(setup.target.depth->pitch());
+    attributes_ = setup.pixel_shader->input_floats();
+    bounds_ = setup.bounds[0];
+    wide_color_ = setup.target.color[0]->format() == Format::R32G32B32A32_FLOAT;
+    CullMode const cull = assembler.state().cull;
+    bool const clockwise = assembler.front_is_clockwise();
+    cull_clockwise_ = cull == (clockwise ? CullMode::Front : CullMode::Back);
+    cull_counter_clockwise_ = cull == (clockwise ? CullMode::Back : CullMode::Front);
+    modes_ = setup.pixel_shader->info().interpolation;
+    table_.resize((std::size_t(kAttributes) + 3 * std::size_t(attributes_)) * kTableRow);
+    attribute_storage_.resize(std::size_t(attributes_) * kShadeRow);
+    std::fill_n(zeros_, kShadeRow, 0);
     std::fill_n(ones_, kShadeRow, 1);
+    attribute_rows_.clear();
     for (int k = 0; k < attributes_; ++k)
         attribute_rows_.push_back(attribute_storage_.data() + std::size_t(k) * kShadeRow);
     for (int k = 0; k < 4; ++k) color_rows_[k] = color_[k];
@@ -396,7 +398,7 @@ void TriangleStream::finish_covered()
         (F(1.0f) / F(area)).store(float_row(kInverse) + t);
         I const tag = gather(survivor_[3], s);
         Mask<N> const exchanged = (tag & I(1)) != I(0);
-        Mask<N> const front = assembler_.front_is_clockwise() ? !exchanged : exchanged;
+        Mask<N> const front = assembler_->front_is_clockwise() ? !exchanged : exchanged;
         store_lanes(I(I::Raw(front.raw)), row(kFront) + t);
         auto const corner = [&](std::size_t k) {
             return gather(reinterpret_cast<std::int32_t const*>(pattern_->corner[k].data()),
@@ -475,7 +477,7 @@ void TriangleStream::add_triangle(std::uint32_t const* v, std::int32_t primitive
                                   AssemblyCounters& counters)
 {
     assembled_.clear();
-    assembler_.assemble(*vertices_, v, 3, primitive_id, 0, counters, assembled_);
+    assembler_->assemble(*vertices_, v, 3, primitive_id, 0, counters, assembled_);
     for (AssembledPrimitive const& p : assembled_) draw_assembled(p);
 }
 
@@ -565,10 +567,10 @@ void TriangleStream::shade()
     batch.sample_index = zeros_;
     batch.coverage = ones_;
     batch.color = color_rows_;
-    setup_.pixel_shader->run(batch, discarded_, setup_.buffers);
+    setup_->pixel_shader.run(batch, discarded_, setup_->buffers);
     fragments_ += shaded_;
 
-    Viewport const& viewport = setup_.target.viewports[0];
+    Viewport const& viewport = setup_->target.viewports[0];
     F const low(viewport.min_depth), high(viewport.max_depth);
     for (std::size_t q = 0; q < shaded_; q += std::size_t(N)) {
         int const n = int(std::min(std::size_t(N), shaded_ - q));

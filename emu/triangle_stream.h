@@ -13,9 +13,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "emu/domain_points.h"
 #include "emu/fragment_bins.h"
 #include "emu/rasterizer.h"
-#include "emu/tessellator.h"
 
 namespace tessemu {
 
@@ -23,11 +23,13 @@ namespace tessemu {
 class TriangleStream {
 public:
     /// True if draws in this state may take this way.
+    /// \param triangles  whether nothing else reaches the rasterizer
     static bool supports(RasterSetup const& setup, bool triangles);
 
-    /// \param tiles_x  tiles in a row of the target
-    TriangleStream(RasterSetup const& setup, PrimitiveAssembler const& assembler, int tiles_x,
-                   int tiles_y);
+    /// Starts a draw, whose `setup` and `assembler` must outlive it. Memory serves draw after draw.
+    /// \param tiles_x, tiles_y  tiles in a row of the target and in a column
+    void bind(RasterSetup const& setup, PrimitiveAssembler const& assembler, int tiles_x,
+              int tiles_y);
 
     /// Starts a chunk whose fragments go to `bins`.
     void begin(AssembledVertices& vertices, FragmentBins& bins);
@@ -43,7 +45,7 @@ public:
     std::uint64_t fragments() const { return fragments_; }
 
 private:
-    static constexpr int N = kNativeLanes;
+    static constexpr int N = kRasterLanes;
     using F = Lanes<N>;
     using I = IntLanes<N>;
     // A triangle of the widest block grid, 15 x 15, must fit the queue.
@@ -87,11 +89,11 @@ private:
     std::int32_t* row(int r) { return table_.data() + std::size_t(r) * kTableRow; }
     float* float_row(int r) { return reinterpret_cast<float*>(row(r)); }
 
-    RasterSetup const& setup_;
-    PrimitiveAssembler const& assembler_;
-    int tiles_x_, tiles_y_, pitch_, attributes_;
+    RasterSetup const* setup_ = nullptr;
+    PrimitiveAssembler const* assembler_ = nullptr;
+    int tiles_x_ = 0, tiles_y_ = 0, pitch_ = 0, attributes_ = 0;
     Rect bounds_;
-    bool wide_color_, cull_clockwise_, cull_counter_clockwise_;
+    bool wide_color_ = false, cull_clockwise_ = false, cull_counter_clockwise_ = false;
     std::vector<Interpolation> modes_;
     AssembledVertices* vertices_ = nullptr;
     FragmentBins* bins_ = nullptr;

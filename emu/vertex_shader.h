@@ -12,8 +12,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "emu/bound_shader.h"
 #include "emu/input_assembler.h"
-#include "emu/machine.h"
 #include "emu/statistics.h"
 
 #include <algorithm>
@@ -38,12 +38,12 @@ public:
     virtual ~VertexProgram() = default;
     virtual int input_floats() const = 0;
     int output_floats() const { return output().floats; }
-    virtual std::vector<ResourceInfo> resources() const = 0;
+    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
     virtual OutputLayout output() const = 0;
     /// Runs a batch, writing `outputs[id * output_floats]`. Without `outputs` the runs are counted
     /// and their results dropped.
-    virtual void run(VertexBatch const& batch, float* outputs, StageCounters& counters,
-                     StageBuffers const& buffers) const = 0;
+    virtual void run(ShaderBinding const& binding, VertexBatch const& batch, float* outputs,
+                     StageCounters& counters, StageBuffers const& buffers) const = 0;
 };
 
 template <class Shader, class T> class VertexProgramOn final : public VertexProgram {
@@ -52,16 +52,19 @@ template <class Shader, class T> class VertexProgramOn final : public VertexProg
     using Output = typename Shader::template Output<T>;
 
 public:
-    VertexProgramOn(Shader const& shader, SiteState const& sites) : shader_(shader), sites_(sites) {}
     int input_floats() const override { return scalar_count<Input>(); }
     OutputLayout output() const override { return output_layout<Output>(); }
-    std::vector<ResourceInfo> resources() const override { return resources_of(shader_); }
-
-    void run(VertexBatch const& batch, float* outputs, StageCounters& counters,
-             StageBuffers const& buffers) const override
+    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
     {
+        return resources_of(binding.as<Shader>());
+    }
+
+    void run(ShaderBinding const& binding, VertexBatch const& batch, float* outputs,
+             StageCounters& counters, StageBuffers const& buffers) const override
+    {
+        Shader const& shader = binding.as<Shader>();
         std::span<std::uint32_t const> const ids = batch.ids;
-        StageScope const scope(counters, buffers, sites_);
+        StageScope const scope(counters, buffers, binding.sites());
         constexpr std::size_t in = scalar_count<Input>(), out = scalar_count<Output>();
         for (std::size_t first = 0; first < ids.size(); first += N) {
             int const active = int(std::min<std::size_t>(N, ids.size() - first));
@@ -83,7 +86,7 @@ public:
                 ++k;
             });
             Output const output =
-                shader_(VertexInput<T>{index, std::int32_t(batch.instance)}, input);
+                shader(VertexInput<T>{index, std::int32_t(batch.instance)}, input);
             if (!outputs) continue;
             k = 0;
             for_each_scalar(output, [&](auto const& s) {
@@ -96,16 +99,14 @@ public:
         counters.invocations += ids.size();
         counters.input_fetches += ids.size();
     }
-
-private:
-    Shader shader_;
-    SiteState sites_;
 };
 
+using VertexShader = BoundShader<VertexProgram>;
+
 template <class Shader>
-std::unique_ptr<VertexProgram> make_vertex_program(Shader const& shader, Machine const& machine)
+VertexShader bind_vertex_shader(Shader const& shader, Machine const& machine)
 {
-    return make_program<VertexProgramOn, VertexProgram>(shader, machine);
+    return bind_shader<VertexProgramOn, VertexProgram>(shader, machine);
 }
 
 } // namespace tessemu

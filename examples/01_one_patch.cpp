@@ -32,9 +32,9 @@ int main()
     PassThroughHullShader<TessellatorDomain::Quad, 4> const hull{.tess_factor = 3};
 
     GraphicsPipelineDesc desc;
-    desc.vertex_shader = make_vertex_program(PassThroughVertexShader{}, {});
-    desc.hull_shader = make_hull_program(hull, {});
-    desc.domain_shader = make_domain_program(Bilinear{}, {});
+    desc.vertex_shader = bind_vertex_shader(PassThroughVertexShader{}, {});
+    desc.hull_shader = bind_hull_shader(hull, {});
+    desc.domain_shader = bind_domain_shader(Bilinear{}, {});
     desc.input_control_points = 4;
 
     DrawCall call;

@@ -4,7 +4,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/obj_reader.h"
 #include "emu/error.h"
-#include "pipeline/technique.h"
+#include "pipeline/schemes/scheme.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -14,9 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     using namespace tessemu;
     try {
         ObjFile file = read_obj({reinterpret_cast<char const*>(data), size}, "fuzz.obj");
-        Technique const& technique = find_technique("gregory-stencil");
-        PreparedMesh const mesh = prepare_mesh(std::move(file.mesh), technique);
-        (void)technique.build(*mesh.topology, {});
+        (void)build_scheme(find_scheme("gregory-stencil"), std::move(file.mesh));
     } catch (Error const&) {
     }
     return 0;

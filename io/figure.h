@@ -25,11 +25,11 @@ struct Figure {
     std::vector<ColorScale> scales; ///< one a column, or none
 };
 
-/// Writes a figure as .png or .exr. Atomic. Throws WriteError, among other things for a machine
+/// Writes a figure as .png or .exr. Atomic. Throws WriteError, among other things on a computer
 /// without the font DejaVu Sans.
 void write_figure(Figure const& figure, std::filesystem::path const& path);
 
-/// Arithmetic against fetches: what stages do, under what the machine can.
+/// Arithmetic against fetches: what stages do, under what the GPU can.
 struct Roofline {
     struct Point {
         std::string label;

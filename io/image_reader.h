@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pipeline/displacement.h"
+#include "pipeline/commands/displacement.h"
 
 #include <filesystem>
 

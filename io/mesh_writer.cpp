@@ -129,37 +129,40 @@ MeshWriter::~MeshWriter()
     fs::remove(impl_->triangle_path, ignored);
 }
 
-void MeshWriter::add(DrawPass const& pass, ShadedPatch const& patch)
+void MeshWriter::add(SurfacePatch const& patch)
 {
     Impl& m = *impl_;
-    DomainPoints const& points = *patch.points;
-    PatchOrigin const& origin = pass.patches[patch.primitive_id];
-    std::size_t const n = points.patch.points();
+    DomainPoints const& points = patch.domain();
+    PatchPlace const& place = patch.place();
+    std::size_t const n = patch.points();
     if (m.vertices + n > 0xffffffffu)
         throw WriteError(m.path.string() + ": the mesh has more than 4294967295 vertices");
     m.number.resize(n);
-    // ShadedVertex: position x y z w, normal x y z.
-    constexpr int component[6] = {0, 1, 2, 4, 5, 6};
     for (std::size_t i = 0; i < n; ++i) {
-        float c[6];
-        for (int k = 0; k < 6; ++k)
-            c[k] = patch.outputs[std::size_t(component[k]) * patch.stride + i];
+        SurfaceVertex const v = patch.vertex(i);
+        Vertex out{{v.position.x, v.position.y, v.position.z},
+                   {v.normal.x, v.normal.y, v.normal.z},
+                   {},
+                   place.face};
         if (m.weld) {
             Bits bits;
-            std::memcpy(bits.words.data(), c, sizeof c);
+            std::memcpy(bits.words.data(), out.position, sizeof out.position);
+            std::memcpy(bits.words.data() + 3, out.normal, sizeof out.normal);
             auto const [it, fresh] = m.welded.try_emplace(bits, std::uint32_t(m.vertices));
             m.number[i] = it->second;
             if (!fresh) continue;
         } else {
             m.number[i] = std::uint32_t(m.vertices);
         }
-        FacePoint const uv = domain_to_face(origin, points.u[i], points.v[i]);
-        m.put({{c[0], c[1], c[2]}, {c[3], c[4], c[5]}, {uv.u, uv.v}, origin.face});
+        UnitPoint const at = domain_to_unit(place, points.u[i], points.v[i]);
+        out.uv[0] = at.u;
+        out.uv[1] = at.v;
+        m.put(out);
     }
-    auto const& index = points.patch.indices;
+    auto const& index = patch.triangles();
     for (std::size_t i = 0; i + 2 < index.size(); i += 3) {
         Triangle const t{{m.number[index[i]], m.number[index[i + 1]], m.number[index[i + 2]]},
-                         origin.face};
+                         place.face};
         bool const collapsed = t.v[0] == t.v[1] || t.v[1] == t.v[2] || t.v[2] == t.v[0];
         if (!m.weld || !collapsed) m.put(t);
     }

@@ -15,7 +15,8 @@ class Sha256;
 /// Streams a mesh to disk: vertices and triangles go to two temporary files that become one at the
 /// end, so memory holds one patch (with welding: one entry per vertex).
 ///
-/// A vertex is position, normal, patch (face number in the mesh, from 0), and u, v in that face.
+/// A vertex is position, normal, patch (the face's number in the file's mesh, from 0), and u, v in
+/// its unit (patch_place.h).
 /// Faces run counter-clockwise seen from outside. OBJ: v, vt (u, v), vn, a group per patch. PLY:
 /// binary little endian, properties x y z nx ny nz u v (float) and patch (int).
 class MeshWriter {
@@ -26,7 +27,7 @@ public:
     MeshWriter(std::filesystem::path path, bool weld);
     ~MeshWriter();
 
-    void add(DrawPass const& pass, ShadedPatch const& patch);
+    void add(SurfacePatch const& patch);
     /// Completes the file. Without it nothing is left behind.
     void finish();
 

@@ -4,7 +4,7 @@
 #include "emu/error.h"
 #include "io/atomic_file.h"
 #include "io/sha256.h"
-#include "pipeline/builtin_models.h"
+#include "pipeline/mesh/builtin_models.h"
 
 namespace tessemu {
 

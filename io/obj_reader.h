@@ -7,7 +7,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pipeline/mesh.h"
+#include "pipeline/mesh/mesh.h"
 
 #include <filesystem>
 #include <string_view>

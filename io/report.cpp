@@ -45,6 +45,26 @@ Json start(ReportHeader const& header)
     return j;
 }
 
+Json to_json(std::vector<StageStatistics> const& stages)
+{
+    Json out = Json::object();
+    for (StageStatistics const& stage : stages) {
+        Json fetches = Json::array();
+        for (FetchStatistics const& f : stage.fetches)
+            fetches.push_back({{"resource", f.resource},
+                               {"kind", name_of(f.kind)},
+                               {"count", f.count},
+                               {"bytes", f.bytes},
+                               {"unique_bytes", f.unique_bytes}});
+        out[stage.stage] = {{"invocations", stage.invocations},
+                            {"flops", to_json(stage.flops)},
+                            {"flops_loop10", flops_loop10(stage.flops)},
+                            {"fetches", fetches},
+                            {"output_bytes", stage.output_bytes}};
+    }
+    return out;
+}
+
 void add_statistics(Json& j, DrawStatistics const& s)
 {
     PipelineStatistics const& p = s.pipeline;
@@ -61,21 +81,17 @@ void add_statistics(Json& j, DrawStatistics const& s)
                      {"CSInvocations", p.CSInvocations},
                      {"HSControlPointInvocations", p.HSControlPointInvocations},
                      {"HSPatchConstantInvocations", p.HSPatchConstantInvocations}};
-    Json& stages = j["stages"] = Json::object();
-    for (StageStatistics const& stage : s.stages) {
-        Json fetches = Json::array();
-        for (FetchStatistics const& f : stage.fetches)
-            fetches.push_back({{"resource", f.resource},
-                               {"kind", name_of(f.kind)},
-                               {"count", f.count},
-                               {"bytes", f.bytes},
-                               {"unique_bytes", f.unique_bytes}});
-        stages[stage.stage] = {{"invocations", stage.invocations},
-                               {"flops", to_json(stage.flops)},
-                               {"flops_loop10", flops_loop10(stage.flops)},
-                               {"fetches", fetches},
-                               {"output_bytes", stage.output_bytes}};
-    }
+    j["stages"] = to_json(s.stages);
+}
+
+void add_commands(Json& j, std::vector<CommandStatistics> const& commands)
+{
+    j["commands"] = Json::array();
+    for (CommandStatistics const& c : commands)
+        j["commands"].push_back({{"kind", c.kind},
+                                 {"name", c.name},
+                                 {"number", c.number},
+                                 {"stages", to_json(c.statistics.stages)}});
 }
 
 // The hash covers everything but itself, the tool, the run and another program's testimony; then
@@ -140,12 +156,13 @@ std::uint64_t fetched_bytes(DrawStatistics const& s)
 }
 } // namespace
 
-std::string draw_report(ReportHeader const& header, DrawStatistics const& statistics,
-                        ColorTarget const& color, DepthTarget const& depth)
+std::string draw_report(ReportHeader const& header, Frame const& frame)
 {
     Json j = start(header);
-    add_statistics(j, statistics);
-    return finish(std::move(j), header, [&](Sha256& hash) { add_targets(hash, color, depth); });
+    add_statistics(j, frame.statistics);
+    add_commands(j, frame.commands);
+    return finish(std::move(j), header,
+                  [&](Sha256& hash) { add_targets(hash, frame.color, frame.depth); });
 }
 
 std::string sha256_of_targets(ColorTarget const& color, DepthTarget const& depth)
@@ -185,12 +202,13 @@ std::string sequence_table(std::vector<SequenceFrame> const& frames)
     return out;
 }
 
-std::string export_report(ReportHeader const& header, DrawStatistics const& statistics,
+std::string export_report(ReportHeader const& header, ListStatistics const& statistics,
                           MeshWriter const& mesh)
 {
     Json j = start(header);
     j["mesh"] = {{"vertices", mesh.vertices()}, {"triangles", mesh.triangles()}};
-    add_statistics(j, statistics);
+    add_statistics(j, statistics.total);
+    add_commands(j, statistics.commands);
     return finish(std::move(j), header, [&](Sha256& hash) { mesh.add_to_hash(hash); });
 }
 
@@ -353,7 +371,7 @@ std::string check_table(std::vector<VerdictRow> const& verdicts, std::size_t mos
 std::string cost_report(ReportHeader const& header, CostSummary const& c)
 {
     Json j = start(header);
-    j["machine"] = c.machine;
+    j["gpu"] = c.gpu;
     j["sources"] = Json::object();
     for (auto const& [number, source] : c.sources) j["sources"][number] = source;
     j["stages"] = Json::array();
@@ -382,7 +400,7 @@ std::string cost_table(CostSummary const& c)
         return s == 0 ? std::string("-") : fmt::format("{:.4f}", 1e3 * s);
     };
     std::string out =
-        fmt::format("{}\n\n{:<16} {:>11} {:>11} {:>11} {:>11} {:>11}  {}\n", c.machine, "stage, ms",
+        fmt::format("{}\n\n{:<16} {:>11} {:>11} {:>11} {:>11} {:>11}  {}\n", c.gpu, "stage, ms",
                     "arithmetic", "fetch", "memory", "rate", "all", "bound by");
     for (CostRow const& r : c.rows)
         out += fmt::format("{:<16} {:>11} {:>11} {:>11} {:>11} {:>11}  {}\n", r.stage,

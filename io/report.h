@@ -7,7 +7,7 @@
 #include "emu/statistics.h"
 #include "io/mesh_writer.h"
 #include "io/tessellator_text.h"
-#include "pipeline/technique.h"
+#include "pipeline/schemes/scheme.h"
 
 #include <string>
 #include <utility>
@@ -31,10 +31,10 @@ struct ReportHeader {
     Config run; ///< times, threads, lanes: not hashed
 };
 
-/// draw: counters and stages; "hash" covers the report without tool, run and hash, then the colour
-/// and the depth target, rows from the top, all samples of each.
-std::string draw_report(ReportHeader const& header, DrawStatistics const& statistics,
-                        ColorTarget const& color, DepthTarget const& depth);
+/// draw: counters and stages of all commands together, then of like commands in a row; "hash"
+/// covers the report without tool, run and hash, then the colour and the depth target, rows from
+/// the top, all samples of each.
+std::string draw_report(ReportHeader const& header, Frame const& frame);
 
 /// A frame of a sequence.
 struct SequenceFrame {
@@ -49,7 +49,7 @@ std::string sequence_report(ReportHeader const& header, std::vector<SequenceFram
 std::string sequence_table(std::vector<SequenceFrame> const& frames);
 
 /// export: the same with the mesh instead of the target.
-std::string export_report(ReportHeader const& header, DrawStatistics const& statistics,
+std::string export_report(ReportHeader const& header, ListStatistics const& statistics,
                           MeshWriter const& mesh);
 
 /// info: the mesh's figures and its patches under a scheme.
@@ -109,12 +109,12 @@ struct CostRow {
     double arithmetic, fetch, memory, fixed, seconds; ///< seconds
     double operations, fetches, fetched_bytes, memory_bytes;
 };
-/// A draw on a machine.
+/// A draw on a GPU.
 struct CostSummary {
-    std::string machine, bound;
+    std::string gpu, bound;
     double overhead, shaders, seconds;
     std::vector<CostRow> rows;
-    std::vector<std::pair<std::string, std::string>> sources; ///< of the machine's numbers
+    std::vector<std::pair<std::string, std::string>> sources; ///< of the GPU's numbers
 };
 /// cost
 std::string cost_report(ReportHeader const& header, CostSummary const& cost);

@@ -31,17 +31,23 @@ std::string key_of(Json const& element, std::size_t index)
         bool const has = element.is_object() && element.contains(name) && element[name].is_string();
         return has ? element[name].get<std::string>() : "";
     };
-    for (char const* name : {"resource", "kind", "name"})
-        if (std::string key = text(name); !key.empty()) return key;
-    for (auto [first, second] : {std::pair{"quantity", "measure"}, {"row", "column"}})
-        if (std::string key = text(first); !key.empty()) return key + "/" + text(second);
+    for (auto [first, second] : {std::pair{"resource", ""},
+                                 {"kind", "name"},
+                                 {"name", ""},
+                                 {"quantity", "measure"},
+                                 {"row", "column"}})
+        if (std::string const key = text(first); !key.empty()) {
+            std::string const more = text(second);
+            return more.empty() ? key : key + "/" + more;
+        }
     return std::to_string(index);
 }
 
-void flatten(Json const& j, std::string const& path,
-             std::vector<std::pair<std::string, Json>>& out)
+void flatten(Json const& j, std::string const& path, std::vector<std::pair<std::string, Json>>& out)
 {
-    auto const below = [&](std::string const& key) { return path.empty() ? key : path + "." + key; };
+    auto const below = [&](std::string const& key) {
+        return path.empty() ? key : path + "." + key;
+    };
     if (j.is_object()) {
         for (auto const& [key, value] : j.items())
             if (!path.empty() || (key != "run" && key != "tool")) flatten(value, below(key), out);

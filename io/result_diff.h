@@ -1,5 +1,5 @@
-// Two results (tessemu.VERB/1) side by side: what differs, and by how much. Counters of a run can so
-// serve as golden files.
+// Two results (tessemu.VERB/1) side by side: what differs, and by how much. Counters of a run can
+// so serve as golden files.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -1,8 +1,9 @@
 // The tessellator's batch format: one case a line, one answer a line.
 //
-//     case:    <domain> <partitioning> <output> <f0> <f1> ...   factors as 8 hexadecimal digits of
-//     the float answer:  <points> <indices> <points hash> <indices hash>  FNV-1a 64 over
-//     little-endian words
+//     case:    <domain> <partitioning> <output> <f0> <f1> ...
+//     answer:  <points> <indices> <points hash> <indices hash>
+//
+// Factors are the 8 hexadecimal digits of the float, hashes FNV-1a 64 over little-endian words.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

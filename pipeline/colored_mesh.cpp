@@ -24,11 +24,13 @@ ColoredMesh control_mesh_picture(Topology const& topology)
         glm::vec3 normal(0); // of the face's mean plane
         for (std::size_t i = 0; i < n; ++i)
             normal += cross(mesh.positions[face[i]], mesh.positions[face[(i + 1) % n]]);
-        int const kind = n == 3 ? 2 : n > 4 ? 3 : is_regular(topology, f) ? 0 : 1;
+        PatchClass const kind = n == 3                    ? PatchClass::Triangle
+                                : n > 4                   ? PatchClass::Other
+                                : is_regular(topology, f) ? PatchClass::RegularQuad
+                                                          : PatchClass::IrregularQuad;
         std::uint32_t first = 0;
         for (std::size_t i = 0; i < n; ++i) {
-            std::uint32_t const id =
-                out.add(mesh.positions[face[i]], normal, patch_kind_color(kind));
+            std::uint32_t const id = out.add(mesh.positions[face[i]], normal, color_of(kind));
             if (i == 0) first = id;
             if (i >= 2) out.triangles.insert(out.triangles.end(), {first, id - 1, id});
         }
@@ -50,13 +52,14 @@ void draw_colored_mesh(ColoredMesh const& mesh, FrameSettings const& s, float am
     color.clear(s.background, threads);
     frame.depth.clear(1, 0, threads);
     frame.statistics = {};
+    frame.commands.clear();
     glm::vec3 const viewer = s.camera.backward();
     GraphicsPipelineDesc desc;
-    desc.vertex_shader = make_vertex_program(
+    desc.vertex_shader = bind_vertex_shader(
         ColoredVertexShader{view_projection(s.camera, float(s.width) / float(s.height))},
         s.machine);
     desc.pixel_shader =
-        make_pixel_program(ColoredPixelShader{{viewer.x, viewer.y, viewer.z}, ambient}, s.machine);
+        bind_pixel_shader(ColoredPixelShader{{viewer.x, viewer.y, viewer.z}, ambient}, s.machine);
     GraphicsPipeline const pipeline(std::move(desc));
     RasterTarget raster{{&color}, &frame.depth, {{0, 0, float(s.width), float(s.height), 0, 1}}};
     raster.rasterizer.cull = s.cull;
@@ -68,14 +71,19 @@ void draw_colored_mesh(ColoredMesh const& mesh, FrameSettings const& s, float am
     options.memory = &frame.memory;
     call.topology = PrimitiveTopology::TriangleList;
     call.indices = std::span<std::uint32_t const>(mesh.triangles);
-    frame.statistics += draw(pipeline, call, &raster, {}, threads, options);
+    auto const run = [&](char const* name) {
+        DrawStatistics const s2 = draw(pipeline, call, &raster, {}, threads, options);
+        frame.statistics += s2;
+        frame.commands.push_back({"draw", name, 1, s2});
+    };
+    run("triangles");
     if (!mesh.lines.empty()) {
         raster.rasterizer.multisample_enable = s.samples > 1;
         raster.rasterizer.slope_scaled_depth_bias = -1;
         raster.rasterizer.depth_bias = -64;
         call.topology = PrimitiveTopology::LineList;
         call.indices = std::span<std::uint32_t const>(mesh.lines);
-        frame.statistics += draw(pipeline, call, &raster, {}, threads, options);
+        run("lines");
     }
     if (frame.color_samples) resolve(*frame.color_samples, frame.color);
 }

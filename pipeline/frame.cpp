@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/frame.h"
 
-#include "pipeline/instanced_tessellation.h"
+#include "pipeline/commands/direct3d10.h"
 #include "shaders_cpp/pixel/bumped_view.h"
 
 #include <glm/geometric.hpp>
@@ -35,19 +35,16 @@ std::optional<View> view_from_name(std::string_view name)
 
 namespace {
 template <class Shader>
-std::shared_ptr<PixelProgram const> on_surface(Shader const& view, Displacement const* displacement,
-                                               Machine const& machine)
+PixelShader on_surface(Shader const& view, Displacement const* displacement, Machine const& machine)
 {
-    if (!displacement) return make_pixel_program(view, machine);
-    return make_pixel_program(
+    if (!displacement) return bind_pixel_shader(view, machine);
+    return bind_pixel_shader(
         BumpedView<Shader>{view, displacement->height_map(), displacement->scale()}, machine);
 }
 } // namespace
 
-std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
-                                              Camera const& camera,
-                                              Displacement const* displacement,
-                                              Machine const& machine)
+PixelShader make_view(View view, PatchKind const& kind, Camera const& camera,
+                      Displacement const* displacement, Machine const& machine)
 {
     auto const array = [](glm::vec3 v) { return std::array<float, 3>{v.x, v.y, v.z}; };
     // A key light over the viewer's left shoulder.
@@ -67,7 +64,7 @@ std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
         return on_surface(NormalPixelShader{}, displacement, machine);
     case View::Patches: {
         PatchPixelShader s;
-        s.color = patch_kind_color(kind.color_index);
+        s.color = color_of(kind.patch_class);
         s.light = array(light);
         return on_surface(s, displacement, machine);
     }
@@ -75,17 +72,24 @@ std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
         DepthPixelShader s;
         s.near_w = camera.near_plane;
         s.far_w = camera.far_plane;
-        return make_pixel_program(s, machine);
+        return bind_pixel_shader(s, machine);
     }
     }
 }
 
-std::array<float, 3> patch_kind_color(int color_index)
+std::array<float, 3> color_of(PatchClass patch_class)
 {
     // As LOOP09's figure 1: gold for regular, purple for irregular quads, green for triangles.
-    constexpr std::array<float, 3> kColors[] = {
-        {0.96f, 0.78f, 0.36f}, {0.66f, 0.54f, 0.86f}, {0.44f, 0.80f, 0.48f}, {0.88f, 0.45f, 0.50f}};
-    return kColors[std::size_t(color_index) % std::size(kColors)];
+    switch (patch_class) {
+    case PatchClass::RegularQuad:
+        return {0.96f, 0.78f, 0.36f};
+    case PatchClass::IrregularQuad:
+        return {0.66f, 0.54f, 0.86f};
+    case PatchClass::Triangle:
+        return {0.44f, 0.80f, 0.48f};
+    default:
+        return {0.88f, 0.45f, 0.50f};
+    }
 }
 
 TessFactorRule tess_factor_rule(AdaptiveFactors const& adaptive, Camera const& camera, int height,
@@ -103,40 +107,25 @@ TessFactorRule tess_factor_rule(AdaptiveFactors const& adaptive, Camera const& c
     return r;
 }
 
-PassSettings pass_settings(FrameSettings const& s)
+SurfaceSettings surface_settings(FrameSettings const& s)
 {
-    PassSettings p;
-    p.tess_factor = s.tess_factor;
-    p.adaptive = tess_factor_rule(s.adaptive, s.camera, s.height, s.tess_factor);
-    p.partitioning = s.partitioning;
-    p.machine = s.machine;
-    p.true_normals = s.true_normals;
-    p.displacement = s.displacement;
-    p.pose = s.pose;
-    p.mistake = s.mistake;
-    p.parity = s.parity;
-    return p;
+    SurfaceSettings out = s;
+    out.adaptive_rule = tess_factor_rule(s.adaptive, s.camera, s.height, s.tess_factor);
+    return out;
 }
 
-std::vector<DrawPass> frame_passes(PatchMesh const& mesh, FrameSettings const& s,
-                                   PassSettings const& settings)
+SurfaceSettings seen_surface(FrameSettings const& s)
 {
-    std::vector<DrawPass> passes = mesh.passes(settings);
-    Mistake const m = s.mistake.kind;
-    if (m == Mistake::Factors || m == Mistake::Fold) {
-        if (s.direct3d10)
-            throw Error("the mistake '" + std::string(name_of(m)) +
-                        "' is the tessellator's, which the Direct3D 10 path does not have");
-        for (DrawPass& pass : passes)
-            for (std::size_t i = 0; i < pass.patches.size(); ++i) {
-                if (pass.patches[i].face != s.mistake.face) continue;
-                (m == Mistake::Fold ? pass.mistakes.reversed_winding : pass.mistakes.other_factor) =
-                    std::int64_t(i);
-            }
-    }
-    if (s.direct3d10)
-        for (DrawPass& pass : passes) pass = instanced(std::move(pass), settings);
-    return passes;
+    SurfaceSettings out = surface_settings(s);
+    out.finish.view_projection = view_projection(s.camera, float(s.width) / float(s.height));
+    return out;
+}
+
+CommandList frame_commands(PatchMesh const& mesh, FrameSettings const& s,
+                           SurfaceSettings const& surface)
+{
+    CommandList list = mesh.commands(surface);
+    return s.direct3d10 ? instanced(std::move(list), surface) : list;
 }
 
 Frame::Frame(FrameSettings const& s)
@@ -151,23 +140,22 @@ Frame::Frame(FrameSettings const& s)
 
 namespace {
 
-// Draws all passes with one rasterizer state.
-void draw_passes(PatchMesh const& mesh, FrameSettings const& s, RasterTarget const& raster,
-                 PassSettings const& settings, ThreadPool const& threads, Frame& frame,
-                 DrawProgress const& progress)
+// The surface's draws once more, as lines over it.
+void add_wires(CommandList& list, FrameSettings const& s, RasterizerState lines)
 {
-    std::vector<DrawPass> const passes = frame_passes(mesh, s, settings);
-    std::size_t all = 0, done = 0;
-    for (DrawPass const& pass : passes) all += pass.patches.size();
-    for (DrawPass const& pass : passes) {
-        DrawOptions options;
-        options.vertex_cache = s.vertex_cache;
-        options.memory = &frame.memory;
-        if (progress)
-            options.progress = [&](std::size_t n, std::size_t) { progress(done + n, all); };
-        frame.statistics += draw_pass(pass, &raster, {}, threads, options);
-        done += pass.patches.size();
-    }
+    lines.fill = FillMode::Wireframe;
+    lines.multisample_enable = s.samples > 1;
+    lines.slope_scaled_depth_bias = -1; // edges lie on the surface's own triangles
+    lines.depth_bias = -64;
+    PixelShader const ink = bind_pixel_shader(FlatPixelShader{{0.05f, 0.06f, 0.08f, 1}}, s.machine);
+    std::vector<Draw> wires;
+    list.for_each_surface_draw([&](Draw const& d) {
+        wires.push_back(d);
+        wires.back().name += ": edges";
+        wires.back().pipeline.pixel_shader = ink;
+        wires.back().rasterizer = lines;
+    });
+    for (Draw& d : wires) list.commands.emplace_back(std::move(d));
 }
 
 void paint_coverage(FrameSettings const& s, Frame& frame)
@@ -192,31 +180,23 @@ void draw_frame(PatchMesh const& mesh, FrameSettings const& s, ThreadPool const&
     ColorTarget& color = frame.color_samples ? *frame.color_samples : frame.color;
     color.clear(s.background, threads);
     frame.depth.clear(1, 0, threads);
-    frame.statistics = {};
-    PassSettings settings = pass_settings(s);
-    settings.view_projection = view_projection(s.camera, float(s.width) / float(s.height));
-    settings.pixel_shader = [&](PatchKind const& kind) {
-        return make_view(s.view, kind, s.camera, s.displacement.get(), s.machine);
-    };
     RasterTarget raster{{&color}, &frame.depth, {{0, 0, float(s.width), float(s.height), 0, 1}}};
     raster.rasterizer.cull = s.cull;
     raster.rasterizer.front_counter_clockwise = true; // as the papers' meshes
-    raster.inclusive_edges = s.mistake.kind == Mistake::TopLeft;
     if (frame.coverage) {
         frame.coverage->clear();
         raster.coverage = frame.coverage.get();
     }
-    draw_passes(mesh, s, raster, settings, threads, frame, progress);
-    if (s.view == View::Wire) {
-        settings.pixel_shader = [&](PatchKind const&) {
-            return make_pixel_program(FlatPixelShader{{0.05f, 0.06f, 0.08f, 1}}, s.machine);
-        };
-        raster.rasterizer.fill = FillMode::Wireframe;
-        raster.rasterizer.multisample_enable = s.samples > 1;
-        raster.rasterizer.slope_scaled_depth_bias = -1; // edges lie on the surface's own triangles
-        raster.rasterizer.depth_bias = -64;
-        draw_passes(mesh, s, raster, settings, threads, frame, progress);
-    }
+    CommandList list = frame_commands(mesh, s, seen_surface(s));
+    list.for_each_surface_draw([&](Draw& d) {
+        d.pipeline.pixel_shader =
+            make_view(s.view, d.kind, s.camera, s.displacement.get(), s.machine);
+    });
+    if (s.view == View::Wire) add_wires(list, s, raster.rasterizer);
+    ListStatistics statistics =
+        run_commands(list, threads, {&raster, {}, s.vertex_cache, &frame.memory, progress});
+    frame.statistics = std::move(statistics.total);
+    frame.commands = std::move(statistics.commands);
     if (frame.color_samples) resolve(*frame.color_samples, frame.color);
     if (frame.coverage) paint_coverage(s, frame);
 }
@@ -229,18 +209,11 @@ Frame draw_frame(PatchMesh const& mesh, FrameSettings const& s, ThreadPool const
     return frame;
 }
 
-DrawStatistics visit_surface(PatchMesh const& mesh, FrameSettings const& s,
+ListStatistics visit_surface(PatchMesh const& mesh, FrameSettings const& s,
                              ThreadPool const& threads, SurfaceVisitor const& visit)
 {
-    DrawStatistics statistics;
-    for (DrawPass const& pass : frame_passes(mesh, s, pass_settings(s))) {
-        PatchVisitor visitor;
-        if (visit) visitor = [&](ShadedPatch const& p) { visit(pass, p); };
-        DrawOptions options;
-        options.vertex_cache = s.vertex_cache;
-        statistics += draw_pass(pass, nullptr, visitor, threads, options);
-    }
-    return statistics;
+    return run_commands(frame_commands(mesh, s, surface_settings(s)), threads,
+                        {nullptr, visit, s.vertex_cache, nullptr, {}});
 }
 
 } // namespace tessemu

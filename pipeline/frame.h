@@ -1,11 +1,11 @@
-// A frame: a patch mesh through all passes into a picture, or patch by patch to a visitor.
+// A frame: a patch mesh's commands into a picture, or patch by patch to a visitor.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "pipeline/camera.h"
-#include "pipeline/displacement.h"
-#include "pipeline/technique.h"
+#include "pipeline/commands/displacement.h"
+#include "pipeline/commands/patch_mesh.h"
 
 #include <optional>
 
@@ -18,13 +18,11 @@ inline constexpr View kViews[] = {View::Lit,   View::Normals, View::Patches,
                                   View::Depth, View::Wire,    View::Coverage};
 
 /// The pixel shader of a view; on a displaced surface normals follow the height map.
-std::shared_ptr<PixelProgram const> make_view(View view, PatchKind const& kind,
-                                              Camera const& camera,
-                                              Displacement const* displacement,
-                                              Machine const& machine);
+PixelShader make_view(View view, PatchKind const& kind, Camera const& camera,
+                      Displacement const* displacement, Machine const& machine);
 
-/// The colour of a patch kind in pictures, by its color_index.
-std::array<float, 3> patch_kind_color(int color_index);
+/// The colour of a class of patches in pictures.
+std::array<float, 3> color_of(PatchClass patch_class);
 
 /// Tess factors from the camera, an edge at a time.
 struct AdaptiveFactors {
@@ -37,7 +35,7 @@ struct AdaptiveFactors {
 TessFactorRule tess_factor_rule(AdaptiveFactors const& adaptive, Camera const& camera, int height,
                                 float tess_factor);
 
-struct FrameSettings {
+struct FrameSettings : SurfaceSettings {
     int width = 1024, height = 1024;
     Camera camera;
     View view = View::Lit;
@@ -45,30 +43,27 @@ struct FrameSettings {
     CullMode cull = CullMode::None; ///< open surfaces show their inside
     int samples = 1;                ///< 1, 2, 4 or 8
     Format color_format = Format::R8G8B8A8_UNORM;
-    float tess_factor = 1;
     AdaptiveFactors adaptive; ///< instead of the uniform factor
-    Partitioning partitioning = Partitioning::FractionalOdd;
-    bool true_normals = false;
-    std::shared_ptr<Displacement const> displacement; ///< none: the smooth surface
-    std::shared_ptr<Pose const> pose;                 ///< none: the mesh at rest
-    PlantedMistake mistake;
-    float parity = 0;        ///< object space; see VertexFinish
-    bool direct3d10 = false; ///< by geometry shader and instances, see instanced_tessellation.h
-    Machine machine;
+    bool direct3d10 = false;  ///< by geometry shader and instances, see direct3d10.h
     VertexCacheModel vertex_cache;
 };
 
-/// What every pass of a frame is made for; without a camera's transform and without pixel shaders.
-PassSettings pass_settings(FrameSettings const& settings);
-/// The passes of a mesh for a frame, in order.
-std::vector<DrawPass> frame_passes(PatchMesh const& mesh, FrameSettings const& settings,
-                                   PassSettings const& pass);
+/// The surface of a frame in object space: its adaptive rule from the camera, the identity
+/// transform.
+SurfaceSettings surface_settings(FrameSettings const& settings);
+/// The same, through the camera.
+SurfaceSettings seen_surface(FrameSettings const& settings);
+/// The commands of a mesh for a frame, without pixel shaders; by the Direct3D 10 path where asked
+/// for.
+CommandList frame_commands(PatchMesh const& mesh, FrameSettings const& settings,
+                           SurfaceSettings const& surface);
 
 /// A picture and what it took. Its memory serves frame after frame.
 struct Frame {
-    ColorTarget color; ///< resolved where there are several samples
-    DepthTarget depth; ///< every sample
-    DrawStatistics statistics;
+    ColorTarget color;                          ///< resolved where there are several samples
+    DepthTarget depth;                          ///< every sample
+    DrawStatistics statistics;                  ///< of all commands
+    std::vector<CommandStatistics> commands;    ///< command by command
     std::unique_ptr<ColorTarget> color_samples; ///< what is drawn to with several samples
     std::unique_ptr<CoverageCounts> coverage;   ///< of the coverage view
     DrawMemory memory;
@@ -77,9 +72,9 @@ struct Frame {
     explicit Frame(FrameSettings const& settings);
 };
 
-/// Clears the frame and draws all passes in order. The frame was made for the same size, format and
-/// samples. The wire view draws the surface first and then its edges over it, and counts both; the
-/// coverage view paints how often a pixel's first sample was covered: grey not at all, blue to
+/// Clears the frame and runs all commands in order. The frame was made for the same size, format
+/// and samples. The wire view draws the surface first and then its edges over it, and counts both;
+/// the coverage view paints how often a pixel's first sample was covered: grey not at all, blue to
 /// white an even number of times, orange an odd number.
 void draw_frame(PatchMesh const& mesh, FrameSettings const& settings, ThreadPool const& threads,
                 Frame& frame, DrawProgress const& progress = {});
@@ -87,12 +82,9 @@ void draw_frame(PatchMesh const& mesh, FrameSettings const& settings, ThreadPool
 Frame draw_frame(PatchMesh const& mesh, FrameSettings const& settings, ThreadPool const& threads,
                  DrawProgress const& progress = {});
 
-/// A patch of the surface in object space: the domain shader ran with the identity transform, so
-/// the position's x, y, z are the surface's, bit for bit (w is 1).
-using SurfaceVisitor = std::function<void(DrawPass const&, ShadedPatch const&)>;
-
-/// Tessellates without raster; uses machine, factors and cache of `settings`. `visit` may be empty.
-DrawStatistics visit_surface(PatchMesh const& mesh, FrameSettings const& settings,
+/// Tessellates without raster, in object space: the transform is the identity, so positions are the
+/// surface's bit for bit. Uses machine, factors and cache of `settings`. `visit` may be empty.
+ListStatistics visit_surface(PatchMesh const& mesh, FrameSettings const& settings,
                              ThreadPool const& threads, SurfaceVisitor const& visit);
 
 } // namespace tessemu

@@ -1,5 +1,5 @@
 // Displacement along the surface normal, closed across patches and texture seams (LOOP09 4.4, 4.5;
-// sheet section 9).
+// docs/math/loop09.md, 9).
 //
 //     P' = P + scale h N
 //
@@ -11,6 +11,7 @@
 #pragma once
 
 #include "emu/texture.h"
+#include "shaders_cpp/domain_edges.h"
 #include "shaders_cpp/projection.h"
 
 namespace tessemu {
@@ -28,9 +29,13 @@ template <class T> struct DisplacedVertex {
     }
 };
 
+/// Slots from here on belong to the epilog of a surface's domain shader, those before to the
+/// surface.
+inline constexpr int kEpilogSlot = 64;
+
 /// Heights in [0, 1].
 struct HeightMap {
-    static constexpr int kImageSlot = 5;
+    static constexpr int kImageSlot = kEpilogSlot;
 
     Texture2D image;     ///< first component; not bound: the solid pattern
     float frequency = 1; ///< of the pattern, periods per unit of length
@@ -63,17 +68,23 @@ private:
     }
 };
 
-/// Texture coordinates of patches' corners, and whose they are on shared edges and at corners.
+/// Texture coordinates of faces' corners, and whose they are on shared edges and at corners.
 ///
 /// A corner of a face has four pairs: the face's own; those of the edge's owner at both ends of the
 /// edge that starts there, in the edge's canonical direction; those of the vertex's owner. Of the
-/// faces that meet there the owner is the one with the smallest number.
+/// faces that meet there the owner is the one with the smallest number. A patch that is a part of
+/// its face looks up where its points lie in the face, so that parts meet with equal bits too.
 struct OwnedCoordinates {
     static constexpr int kFloats = 8;
-    Buffer<float> corners; ///< [face corner][4][2]
-    /// [primitive][2]: the face's first corner; how often the patch is turned against the face,
-    /// plus 4 << k where the canonical direction of edge k runs from corner k+1 to k
-    Buffer<std::uint32_t> patches;
+    /// Bits of a patch's second word.
+    static constexpr int kTurns = 3;    ///< how often the patch is turned against the face
+    static constexpr int kReversed = 2; ///< shift: bit k, edge k runs against its canonical one
+    static constexpr int kHalves = 64;  ///< the quad at an n-gon's corner: edges 0, 3 are halves
+    static constexpr int kLevel = 8;    ///< shift: the patch has a side of 2^-level of the face's
+    static constexpr int kCell = 16;    ///< shift: its cell, row by row
+
+    Buffer<float> corners;         ///< [face corner][4][2]
+    Buffer<std::uint32_t> patches; ///< [primitive][2]: the face's first corner; the bits above
     int sides = 4;
 
     template <class T> struct Pair {
@@ -85,43 +96,58 @@ struct OwnedCoordinates {
         Routine<T> const here("owned_coordinates");
         std::int32_t const first = load<T>(patches, 2 * in.primitive_id);
         std::int32_t const word = load<T>(patches, 2 * in.primitive_id + 1);
+        int const level = word >> kLevel & 255;
+        if (level == 0 && !(word & kHalves)) return in_face<T>(first, word, in.u, in.v);
+        // Turned into the face's frame, then into the patch's cell: all of it exact.
+        int const turns = word & kTurns, cell = word >> kCell & 0xffff;
+        T const U = T(1) - in.u, V = T(1) - in.v;
+        T const u = turns == 0 ? in.u : turns == 1 ? V : turns == 2 ? U : in.v;
+        T const v = turns == 0 ? in.v : turns == 1 ? in.u : turns == 2 ? V : U;
+        T const size(1.0f / float(1 << level));
+        return in_face<T>(first, word & ~kTurns, size * T(T(float(cell & ((1 << level) - 1))) + u),
+                          size * T(T(float(cell >> level)) + v));
+    }
+
+private:
+    template <class T> Pair<T> in_face(std::int32_t first, std::int32_t word, T u, T v) const
+    {
         auto const read = [&](int corner, int which) -> float2<T> {
-            std::int32_t const at = kFloats * (first + (corner + (word & 3)) % sides) + 2 * which;
+            std::int32_t const at =
+                kFloats * (first + (corner + (word & kTurns)) % sides) + 2 * which;
             return {load<T>(corners, at), load<T>(corners, at + 1)};
         };
         float2<T> const c0 = read(0, 0), c1 = read(1, 0), c2 = read(2, 0);
-        T const U = T(1) - in.u, V = T(1) - in.v, w = U - in.v;
+        T const U = T(1) - u, V = T(1) - v, w = U - v;
         Pair<T> r;
         if (sides == 4) {
-            float2<T> const bottom = U * c0 + in.u * c1, top = U * read(3, 0) + in.u * c2;
-            r.own = V * bottom + in.v * top;
+            float2<T> const bottom = U * c0 + u * c1, top = U * read(3, 0) + u * c2;
+            r.own = V * bottom + v * top;
         } else {
-            r.own = in.u * c0 + in.v * c1 + w * c2;
+            r.own = u * c0 + v * c1 + w * c2;
         }
         r.owner = r.own;
-        // As the watertight patch: edge k runs from corner k to k+1 with parameter t[k].
-        bool const quad = sides == 4;
-        mask_of<T> const on[4] = {quad ? in.v == T(0) : w == T(0),
-                                  quad ? in.u == T(1) : in.u == T(0),
-                                  quad ? in.v == T(1) : in.v == T(0), in.u == T(0)};
-        T const t[4] = {quad ? in.u : in.v, quad ? in.v : w, quad ? U : in.u, V};
+        DomainEdges<4, T> at = domain_edges<T>(sides, u, v, w, U, V);
+        if (word & kHalves) {
+            at.t[0] = T(0.5) * at.t[0];
+            at.t[3] = T(0.5) + T(T(0.5) * at.t[3]);
+        }
         for (int k : loop<T>(sides))
             r.owner = when(
-                on[k],
+                at.on[k],
                 [&] {
-                    bool const reversed = word >> (2 + k) & 1;
-                    return on_edge<T>(read(k, 1), read(k, 2), reversed ? T(T(1) - t[k]) : t[k]);
+                    bool const reversed = word >> (kReversed + k) & 1;
+                    return on_edge<T>(read(k, 1), read(k, 2),
+                                      reversed ? T(T(1) - at.t[k]) : at.t[k]);
                 },
                 r.owner);
         for (int k : loop<T>(sides)) {
-            mask_of<T> const corner = on[k] & on[(k + sides - 1) % sides];
+            mask_of<T> const corner = at.on[k] & at.on[(k + sides - 1) % sides];
             r.owner = when(
                 corner, [&] { return read(k, 3); }, r.owner);
         }
         return r;
     }
 
-private:
     /// The same routine from both sides of an edge, whatever the patches' shapes.
     template <class T> static float2<T> on_edge(float2<T> const& first, float2<T> const& last, T s)
     {

@@ -9,7 +9,7 @@
 
 namespace tessemu {
 
-/// The control mesh as it is. Animation enters here.
+/// The control mesh as it is, at rest.
 struct PassThroughVertexShader {
     template <class T> using Input = ControlVertex<T>;
     template <class T> using Output = ControlVertex<T>;

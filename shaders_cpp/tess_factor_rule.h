@@ -1,15 +1,30 @@
 // Tess factors of a patch: uniform, by the edges' projected length, or by their distance.
 //
-// An edge's factor is computed from the edge's cubic alone, in its canonical direction, so both
-// patches at it get the same bits and the tessellator gives them the same points.
+// An edge's factor is computed from a polygon of four points along it alone, in the edge's
+// canonical direction, so both patches at it get the same bits and the tessellator gives them the
+// same points. The polygon is a cubic's control polygon, or any other that both patches have.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "emu/tessellator.h"
-#include "shaders_cpp/watertight_patch.h"
+#include "shaders_cpp/records.h"
 
 namespace tessemu {
+
+/// Four points along an edge, from corner k to corner k+1.
+template <class T> struct EdgePolygon {
+    float3<T> p0, p1, p2, p3;
+};
+
+/// Of an edge that is a straight line: thirds of it, the same bits from either end: sums of two
+/// rounded products do not depend on their order.
+template <class T> constexpr EdgePolygon<T> straight_edge(float3<T> const& a, float3<T> const& b)
+{
+    T const third(1.0 / 3), two_thirds(2.0 / 3);
+    float3<T> const a1 = third * a, a2 = two_thirds * a, b1 = third * b, b2 = two_thirds * b;
+    return {a, float3<T>(a2 + b1), float3<T>(a1 + b2), b};
+}
 
 struct TessFactorRule {
     enum class Kind { Uniform, ProjectedLength, Distance };
@@ -18,11 +33,10 @@ struct TessFactorRule {
     std::array<float, 3> eye{}; ///< object space
     float scale = 1;            ///< ProjectedLength: times length / distance; Distance: over it
 
-    /// \param edge      edge(k): the edge from corner k to corner k+1
+    /// \param edge      edge(k): the edge's polygon, or a curve with such points
     /// \param reversed  reversed(k): whether its canonical direction is the other one
     /// \returns         in the tessellator's order, at least 1; the inside follows the larger of
-    /// the
-    ///                  edges that it runs along
+    ///                  the edges that it runs along
     template <TessellatorDomain kDomain, class T>
     std::array<T, 6> factors(auto const& edge, auto const& reversed) const
     {
@@ -33,7 +47,7 @@ struct TessFactorRule {
         constexpr int N = kDomain == TessellatorDomain::Quad ? 4 : 3;
         T f[N];
         for (int k = 0; k < N; ++k) {
-            EdgeCurve<T> const e = edge(k);
+            auto const e = edge(k);
             auto const back = reversed(k);
             f[k] = edge_factor<T>(select(back, e.p3, e.p0), select(back, e.p2, e.p1),
                                   select(back, e.p1, e.p2), select(back, e.p0, e.p3));
@@ -44,8 +58,8 @@ struct TessFactorRule {
             return {f[1], f[2], f[0], max(max(f[0], f[1]), f[2]), T(1), T(1)};
     }
 
-    /// Of a cubic: the length of its control polygon stands for its own, the distance is that of
-    /// its middle. \cost 19 mul, 1 div, 4 sqrt
+    /// The length of a cubic's control polygon stands for its own, the distance is that of its
+    /// middle. \cost 19 mul, 1 div, 4 sqrt
     template <class T>
     T edge_factor(float3<T> const& p0, float3<T> const& p1, float3<T> const& p2,
                   float3<T> const& p3) const

@@ -1,5 +1,5 @@
 // Patches whose edges have equal bits from both sides: LOOP09 section 4.5, worked out for positions
-// and normals.
+// and normals (docs/math/loop09.md, 9).
 //
 // Both patches evaluate the same cubic (p, e, e, p) of shared control points and the same normal
 // field N(t) = u(t) x W(t), in the edge's canonical direction (from the smaller to the larger
@@ -9,8 +9,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "emu/domain_shader.h"
 #include "shaders_cpp/bezier.h"
+#include "shaders_cpp/domain_edges.h"
 
 namespace tessemu {
 
@@ -33,28 +33,23 @@ template <class T> struct EdgeRegister {
 /// and last = p3 - p2.
 template <class T> struct EdgeCurve {
     float3<T> p0, p1, p2, p3, first, last;
-};
-
-/// The edge of a patch whose control points begin with p, e+, e- (N each).
-template <int N, class Patch> constexpr auto cubic_edge(Patch const& patch, int k)
-{
-    int const next = (k + 1) % N;
-    auto const p0 = patch[k].position, p1 = patch[N + k].position;
-    auto const p2 = patch[2 * N + next].position, p3 = patch[next].position;
-    using T = std::remove_cvref_t<decltype(p0.x)>;
-    return EdgeCurve<T>{p0, p1, p2, p3, float3<T>(p1 - p0), float3<T>(p3 - p2)};
-}
-
-/// Corners' registers are pairs of tangents, 2i and 2i + 1.
-template <int N> struct TangentPairCorners {
-    template <class T>
-    static constexpr float3<T> corner_normal(ControlPoints<EdgeRegister<T>> const& registers, int i)
+    static constexpr auto signature()
     {
-        float3<T> const a = registers[4 * N + 2 * i].vector;
-        float3<T> const b = registers[4 * N + 2 * i + 1].vector;
-        return cross(a, b);
+        return std::tuple{&EdgeCurve::p0, &EdgeCurve::p1,    &EdgeCurve::p2,
+                          &EdgeCurve::p3, &EdgeCurve::first, &EdgeCurve::last};
     }
 };
+
+/// The same curve from its other end.
+template <class T> constexpr EdgeCurve<T> reversed(EdgeCurve<T> const& e)
+{
+    return {e.p3, e.p2, e.p1, e.p0, -e.last, -e.first};
+}
+template <class M, class T>
+constexpr EdgeCurve<T> select(M mask, EdgeCurve<T> const& a, EdgeCurve<T> const& b)
+{
+    return select_record(mask, a, b);
+}
 
 /// Point and normal direction of a shared edge.
 ///
@@ -78,14 +73,6 @@ constexpr SurfacePoint<T> edge_point(EdgeCurve<T> const& edge, float3<T> const (
     return r;
 }
 
-/// Mistakes at patch edges, planted for checkers to find; each breaks a step of the recipe.
-struct EdgeMistakes {
-    bool own_direction = false; ///< each patch walks its edge from its own corner k to k+1
-    bool mirror_pairs = false;  ///< and sums (b0 p0 + b3 p3) + (b1 p1 + b2 p2), which a contracted
-                                ///< multiply-add makes unsymmetric
-    bool own_normals = false;   ///< the patch's own cross product on edges and at corners
-};
-
 /// Domain shader of a patch.
 ///
 ///     struct Inside {
@@ -108,7 +95,7 @@ struct EdgeMistakes {
 /// p1, w = 1 at p2.
 template <class Inside> struct WatertightPatch {
     static constexpr TessellatorDomain kDomain = Inside::kDomain;
-    static constexpr int kSides = kDomain == TessellatorDomain::Quad ? 4 : 3;
+    static constexpr int kSides = sides_of(kDomain);
     static constexpr int kControlPoints = Inside::kControlPoints;
     template <class T> using ControlPoint = typename Inside::template ControlPoint<T>;
     template <class T> using PatchConstant = EdgeRegister<T>;
@@ -117,22 +104,24 @@ template <class Inside> struct WatertightPatch {
     template <class T> using Registers = ControlPoints<EdgeRegister<T>>;
 
     bool true_normals = false; ///< of interior points, where the scheme tells them from its own
-    EdgeMistakes mistakes = {};
 
     template <class T>
     constexpr SurfacePoint<T> operator()(DomainInput<T> const& in, Patch<T> const& patch,
                                          Registers<T> const& registers) const
     {
-        SurfacePoint<T> s;
-        if constexpr (kSides == 4) {
-            mask_of<T> const on[4] = {in.v == T(0), in.u == T(1), in.v == T(1), in.u == T(0)};
-            T const t[4] = {in.u, in.v, T(1) - in.u, T(1) - in.v};
-            s = inside_or_boundary<T>(in, patch, registers, on, t);
-        } else {
-            mask_of<T> const on[3] = {in.w == T(0), in.u == T(0), in.v == T(0)};
-            T const t[3] = {in.v, in.w, in.u};
-            s = inside_or_boundary<T>(in, patch, registers, on, t);
-        }
+        DomainEdges<kSides, T> const at = domain_edges<kDomain>(in);
+        auto boundary = at.on[0] | at.on[1] | at.on[2];
+        if constexpr (kSides == 4) boundary = boundary | at.on[3];
+        float3<T> const zero(T(0), T(0), T(0));
+        SurfacePoint<T> const inside = when(
+            !boundary,
+            [&] {
+                TangentFrame<T> const frame = evaluate<T>(in, patch, registers);
+                return SurfacePoint<T>{frame.position, cross(frame.du, frame.dv)};
+            },
+            SurfacePoint<T>{zero, zero});
+        SurfacePoint<T> s = when(
+            boundary, [&] { return boundary_point<T>(patch, registers, at); }, inside);
         s.normal = unit_or_zero(s.normal);
         return s;
     }
@@ -148,44 +137,18 @@ private:
             return Inside::template evaluate<T>(patch, in, true_normals);
     }
 
+    /// Edges through edge_point in canonical direction, corners from vertex data.
     template <class T>
-    constexpr SurfacePoint<T> inside_or_boundary(DomainInput<T> const& in, Patch<T> const& patch,
-                                                 Registers<T> const& registers,
-                                                 mask_of<T> const (&on)[kSides],
-                                                 T const (&t)[kSides]) const
-    {
-        auto boundary = on[0] | on[1] | on[2];
-        if constexpr (kSides == 4) boundary = boundary | on[3];
-        float3<T> const zero(T(0), T(0), T(0));
-        auto const evaluated = mistakes.own_normals ? (boundary | !boundary) : !boundary;
-        SurfacePoint<T> const inside = when(
-            evaluated,
-            [&] {
-                TangentFrame<T> const frame = evaluate<T>(in, patch, registers);
-                return SurfacePoint<T>{frame.position, cross(frame.du, frame.dv)};
-            },
-            SurfacePoint<T>{zero, zero});
-        SurfacePoint<T> s = when(
-            boundary, [&] { return boundary_point<T>(patch, registers, on, t); }, inside);
-        if (mistakes.own_normals) s.normal = inside.normal;
-        return s;
-    }
-
-    /// Edges through edge_point, corners from vertex data.
-    ///
-    /// \param on  on[k]: the point lies on edge k
-    /// \param t   t[k]: its parameter from corner k to corner k+1
-    template <class T>
-    constexpr SurfacePoint<T> boundary_point(Patch<T> const& patch, Registers<T> const& registers,
-                                             mask_of<T> const (&on)[kSides],
-                                             T const (&t)[kSides]) const
+    static constexpr SurfacePoint<T> boundary_point(Patch<T> const& patch,
+                                                    Registers<T> const& registers,
+                                                    DomainEdges<kSides, T> const& at)
     {
         constexpr int N = kSides;
         float3<T> const zero(T(0), T(0), T(0));
         SurfacePoint<T> s{zero, zero};
         for (int k : loop<T>(N)) {
             int const next = (k + 1) % N, previous = (k + N - 1) % N;
-            auto const inside_edge = on[k] & !(on[next] | on[previous]);
+            auto const inside_edge = at.on[k] & !(at.on[next] | at.on[previous]);
             s = when(
                 inside_edge,
                 [&] {
@@ -195,19 +158,12 @@ private:
                                             registers[4 * k + 3].vector};
                     EdgeCurve<T> const e = Inside::template edge<T>(patch, k);
                     auto const back = first.reversed > T(0);
-                    EdgeCurve<T> const canonical{
-                        select(back, e.p3, e.p0),       select(back, e.p2, e.p1),
-                        select(back, e.p1, e.p2),       select(back, e.p0, e.p3),
-                        select(back, -e.last, e.first), select(back, -e.first, e.last)};
-                    SurfacePoint<T> point =
-                        edge_point<T>(canonical, W, select(back, T(1) - t[k], t[k]));
-                    if (mistakes.own_direction) point = own_edge_point<T>(e, W, back, t[k]);
-                    if (mistakes.mirror_pairs) point.position = mirror_pairs<T>(e, t[k]);
-                    return point;
+                    T const t = select(back, T(1) - at.t[k], at.t[k]);
+                    return edge_point<T>(select(back, reversed(e), e), W, t);
                 },
                 s);
             s = when(
-                on[k] & on[previous],
+                at.on[k] & at.on[previous],
                 [&] {
                     return SurfacePoint<T>{Inside::template corner<T>(patch, k),
                                            Inside::template corner_normal<T>(registers, k)};
@@ -215,24 +171,6 @@ private:
                 s);
         }
         return s;
-    }
-
-    /// A mistake: the edge in the patch's own direction. Along it W is -W, backwards.
-    template <class T>
-    static constexpr SurfacePoint<T> own_edge_point(EdgeCurve<T> const& e, float3<T> const (&W)[4],
-                                                    mask_of<T> const& back, T t)
-    {
-        float3<T> own[4];
-        for (int i = 0; i < 4; ++i) own[i] = select(back, float3<T>(-W[3 - i]), W[i]);
-        return edge_point<T>(e, own, t);
-    }
-
-    /// A mistake where products may be fused: the sum looks symmetric and is not.
-    template <class T> static constexpr float3<T> mirror_pairs(EdgeCurve<T> const& e, T t)
-    {
-        T const s = T(1) - t, ss = s * s, tt = t * t, m = T(3) * T(s * t);
-        T const b0 = ss * s, b1 = m * s, b2 = m * t, b3 = tt * t;
-        return (b0 * e.p0 + b3 * e.p3) + (b1 * e.p1 + b2 * e.p2);
     }
 };
 

@@ -15,7 +15,7 @@ using namespace tessemu;
 int main()
 {
     BenchScene const scene;
-    ControlMesh const& mesh = *scene.mesh.mesh;
+    ControlMesh const& mesh = scene.mesh();
     RTCDevice const device = rtcNewDevice("threads=1");
     RTCGeometry const geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SUBDIVISION);
     auto* const positions = static_cast<float*>(rtcSetNewGeometryBuffer(

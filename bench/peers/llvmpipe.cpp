@@ -9,7 +9,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/scene.h"
 #include "io/image_writer.h"
-#include "pipeline/patch_stencils.h"
+#include "pipeline/schemes/gregory/stencils.h"
 
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
@@ -132,11 +132,11 @@ void make_context()
 std::vector<float> control_points(BenchScene const& scene)
 {
     std::vector<float> out;
-    ControlMesh const& mesh = *scene.mesh.mesh;
+    ControlMesh const& mesh = scene.mesh();
     Neighbourhood n;
     for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
         if (mesh.face(f).size() != 4) continue;
-        find_neighbourhood(*scene.mesh.topology, f, n);
+        find_neighbourhood(scene.scheme.mesh->topology(), f, n);
         PatchStencils const s = make_gregory_stencils(n, false, {});
         for (int r = 0; r < kPoints; ++r) {
             glm::dvec3 p(0);

@@ -21,7 +21,7 @@ namespace osd = OpenSubdiv;
 int main()
 {
     BenchScene const scene;
-    ControlMesh const& mesh = *scene.mesh.mesh;
+    ControlMesh const& mesh = scene.mesh();
     std::vector<int> sides, indices;
     for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
         sides.push_back(int(mesh.face(f).size()));

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "shaders_cpp/acc/acc_quad.h"
-#include "shaders_cpp/stencil_hull_shader.h"
+#include "shaders_cpp/stencil_form/stencil_hull_shader.h"
 
 namespace tessemu {
 

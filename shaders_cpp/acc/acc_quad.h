@@ -1,5 +1,5 @@
 // Approximate Catmull-Clark patch (ACC, Loop and Schaefer 2008): a bicubic for the position and two
-// tangent patches for the normal; sheet section 5.
+// tangent patches for the normal; docs/math/loop09.md, 5.
 //
 //     b03--b13--b23--b33     v     Control points as a Gregory quad's, p 0..3, e+ 4..7, e- 8..11,
 //      |    |    |    |      |     inner 12..15 by corner; then the corners' tangents towards the
@@ -15,7 +15,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "shaders_cpp/watertight_patch.h"
+#include "shaders_cpp/cubic_edges.h"
 
 namespace tessemu {
 
@@ -57,7 +57,8 @@ constexpr std::array<float3<T>, 2> acc_edge_rule(T c0, T c1, float3<T> const& fi
 ///
 /// \param patch  25 control points; each is fetched once
 /// \returns      position, and the tangent fields U and W: dS/du and dS/dv where the patch is
-/// regular \cost         266 mul (272 with the cross product)
+///               regular
+/// \cost         266 mul (272 with the cross product)
 template <class T>
 constexpr TangentFrame<T> acc_quad(ControlPoints<AccControlPoint<T>> const& patch, T u, T v)
 {

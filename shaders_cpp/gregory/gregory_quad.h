@@ -1,5 +1,5 @@
-// Gregory quad patch, LOOP09 section 3: 20 control points, a bicubic whose four interior points
-// depend on (u,v).
+// Gregory quad patch, LOOP09 section 3 (docs/math/loop09.md, 3): 20 control points, a bicubic whose
+// four interior points depend on (u,v).
 //
 //     p3 --e3-- . --e2+-- p2        v
 //     |   f3-  f3+ f2- f2+ |        |
@@ -56,9 +56,8 @@ template <class T> struct BlendedFacePoint {
 /// Gregory quad patch at (u,v): Q = B3(u) G B3(v).
 ///
 /// \param patch         20 control points, object space; each is fetched once
-/// \param true_normals  tangents of the rational surface; otherwise those of the Bezier patch with
-/// F
-///                      frozen at (u,v) (LOOP09 4.4), equal to them on the edges
+/// \param true_normals  tangents of the rational surface; otherwise those of the Bezier patch whose
+///                      F are frozen at (u,v) (LOOP09 4.4), equal to them on the edges
 /// \returns             position and derivatives along u and v
 /// \cost                frozen: 188 mul, 4 div (with the cross product 194 + 4 = 198)
 template <class T>

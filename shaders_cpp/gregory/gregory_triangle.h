@@ -1,5 +1,5 @@
-// Gregory triangle patch, LOOP09 section 3: 15 control points, a quartic Bezier triangle whose
-// three interior points depend on (u,v,w) and whose edges are cubics.
+// Gregory triangle patch, LOOP09 section 3 (docs/math/loop09.md, 3): 15 control points, a quartic
+// Bezier triangle whose three interior points depend on (u,v,w) and whose edges are cubics.
 //
 //            p2
 //          e2+  e2-           corner weights: u at p0, v at p1, w at p2

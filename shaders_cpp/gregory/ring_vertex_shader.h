@@ -1,22 +1,34 @@
-// Vertex shader of the two-stage form, LOOP09 section 4.1: from a vertex and its one-ring to all
-// that the patches around it need of the vertex.
+// Vertex shader of Gregory patches in the two-stage form, LOOP09 section 4.1: from a vertex and its
+// one-ring to all that the patches around it need of the vertex.
 //
 // Connectivity and positions come from textures (figure 7). A vertex is a pure function of its
 // number, so runs after a cache miss and patches on all sides get the same bits. The vectors of a
-// vertex: p, the normal A x B, edge points e_j, transversal vectors r_j (sheet section 2).
+// vertex: p, the normal A x B, edge points e_j, transversal vectors r_j (docs/math/loop09.md, 2).
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "shaders_cpp/ring_vertex.h"
+#include "shaders_cpp/two_stage_form/ring_vertex.h"
 
 namespace tessemu {
 
-/// Numbers that depend on a vertex's valence alone, by RingRows.
+/// Numbers that depend on a vertex's valence alone: a table in memory, a row of kRow floats for
+/// each valence (RingRows).
 ///
-/// Interior: p = row[0] v + row[1] sum (m_j + c_j), and for each j six: the weights of m_j in A and
-/// in B, of c_j in A and in B, and those of A and B in e_j - p. Boundary: row[0], row[1] are the
-/// weights of v and of d_0 + d_k in b; second and fourth of the six those of d_j and x_j in b.
+/// The limit tangents are two sums over the ring, q_j = cos(2pi j/n) A + sin(2pi j/n) B, so that a
+/// vertex needs only A and B and each edge only two cosines. What a row holds, by where it is used:
+///
+///     interior, n faces (LOOP09 3.3)             boundary, k faces (LOOP09 4.6)
+///     [0], [1]  p = [0] v + [1] sum (m_j + c_j)  B = [0] v + [1] (d_0 + d_k) + ...
+///     then six for each edge j:
+///     [0]       A += [0] m_j                     -
+///     [1]       B += [1] m_j                     ... + [1] d_j
+///     [2]       A += [2] c_j                     -
+///     [3]       B += [3] c_j                     ... + [3] x_j
+///     [4], [5]  e_j = p + [4] A + [5] B          the same, A along the boundary, B across it
+///
+/// m_j: midpoint of edge j. c_j: centroid of face j. d_j: far end of edge j. x_j: vertex opposite
+/// in face j. With one face A and B are its two edges and only [4] and [5] are used.
 struct RingConstants {
     static constexpr int kEach = 6;
     static constexpr int kRow = 2 + kEach * RingLayout::kEdges;
@@ -36,9 +48,8 @@ template <class Weight = float> struct RingVertexShader : RingTextures {
         return {rings.info(), entries.info(), positions.info(), constants.info()};
     }
 
-    /// \cost  interior, n faces: 30n + 6 mul and the normal's 6; reads 2 ring words, 2n entries, n
-    /// +
-    ///        quads positions, 6n + 2 constants
+    /// \cost  interior, n faces: 30n + 6 mul and the normal's 6; reads 2 ring words, 2n entries,
+    ///        n + quads positions, 6n + 2 constants
     template <class T>
     RingVertex<T> operator()(VertexInput<T> const& in, ControlVertex<T> const& stream) const
     {
@@ -144,7 +155,7 @@ private:
                     return p + of_edge<T>(ring, j, 4) * s.A + of_edge<T>(ring, j, 5) * s.B;
                 },
                 zero);
-            out.vectors[std::size_t(RingLayout::kR + j)] = when(
+            out.vectors[std::size_t(RingLayout::kSecond + j)] = when(
                 here,
                 [&]() -> V {
                     V const next = select(Int(j + 1) == ring.n, m[0], m[j + 1]);
@@ -157,7 +168,7 @@ private:
         return out;
     }
 
-    // LOOP09 4.6 (sheet section 4).
+    // LOOP09 4.6 (docs/math/loop09.md, 4).
     template <class T>
     RingVertex<T> boundary_vertex(Faces<T> const& ring, RingVertex<T> const& none) const
     {
@@ -196,7 +207,7 @@ private:
                 },
                 zero);
             // The first and the last are reflected across the boundary.
-            out.vectors[std::size_t(RingLayout::kR + j)] = when(
+            out.vectors[std::size_t(RingLayout::kSecond + j)] = when(
                 here,
                 [&]() -> V {
                     int const before = j == 0 ? 0 : j - 1;

@@ -8,14 +8,14 @@
 
 namespace tessemu {
 
-/// SV_PrimitiveID, and a number of the pass. Exact below 2^24.
+/// SV_PrimitiveID, and the draw's number in the frame. Exact below 2^24.
 struct IdPixelShader {
     template <class T> using Input = SurfaceAttributes<T>;
-    float pass = 0;
+    float draw = 0;
     template <class T>
     float4<T> operator()(PixelInput<T> const& pixel, SurfaceAttributes<T> const&) const
     {
-        return {T(pixel.primitive_id), T(pass), T(0), T(1)};
+        return {T(pixel.primitive_id), T(draw), T(0), T(1)};
     }
 };
 

@@ -1,10 +1,10 @@
-// Hull shader of Pm-patches (sheet section 6): an invocation for each sector gives p, t+, t-, b211
-// and b121; the fork phase completes the middle, where the sectors meet.
+// Hull shader of Pm-patches (docs/math/loop09.md, 6): an invocation for each sector gives p, t+,
+// t-, b211 and b121; the fork phase completes the middle, where the sectors meet.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "shaders_cpp/sector_tables.h"
+#include "shaders_cpp/two_stage_form/corner_tables.h"
 
 namespace tessemu {
 
@@ -13,7 +13,7 @@ namespace tessemu {
 template <int m> struct PmRegisters {
     static constexpr int kMiddle = 5 * m, kCentre = 6 * m, kCount = 6 * m + 1;
 };
-/// Vectors of a sector.
+/// Vectors of a sector, which lies between corner i and corner i+1, behind its corner's p, e+, e-.
 struct PmSector {
     static constexpr int kB211 = 3, kB121 = 4;
 };
@@ -42,19 +42,19 @@ template <class T> constexpr float3<T> pm_raised(float3<T> const& p, float3<T> c
 }
 
 template <TessellatorDomain kDomain_, class Weight = float>
-struct PmHullShader : SectorTables<kDomain_ == TessellatorDomain::Quad ? 4 : 3, Weight> {
+struct PmHullShader : CornerTables<kDomain_ == TessellatorDomain::Quad ? 4 : 3, Weight> {
     static constexpr TessellatorDomain kDomain = kDomain_;
-    using Tables = SectorTables<kDomain_ == TessellatorDomain::Quad ? 4 : 3, Weight>;
+    using Tables = CornerTables<kDomain_ == TessellatorDomain::Quad ? 4 : 3, Weight>;
     static constexpr int m = Tables::kSides;
     template <class T> using Input = RingVertex<T>;
-    template <class T> using ControlPoint = SectorOf<5, T>;
+    template <class T> using ControlPoint = CornerVectors<5, T>;
     template <class T> using PatchConstant = EdgeRegister<T>;
 
     int patch_constants() const { return PmRegisters<m>::kCount; }
 
     template <class T>
-    SectorOf<5, T> control_point(PatchInput patch, ControlPoints<RingVertex<T>> const& in,
-                                 int_of<T> i) const
+    CornerVectors<5, T> control_point(PatchInput patch, ControlPoints<RingVertex<T>> const& in,
+                                      int_of<T> i) const
     {
         using Int = int_of<T>;
         using V = float3<T>;
@@ -73,10 +73,10 @@ struct PmHullShader : SectorTables<kDomain_ == TessellatorDomain::Quad ? 4 : 3, 
         constexpr double mu = kPmMu<m>;
         T const k1(1 / (4 * mu)), k0(1 / (8 * mu)), k(3 / (8 * mu)), two_mu_1(2 * mu - 1), one(1);
         T const lift = k / S;
-        SectorOf<5, T> out;
-        out.vectors[SectorLayout::kP] = pa;
-        out.vectors[SectorLayout::kEPlus] = ta;
-        out.vectors[SectorLayout::kEMinus] = in.vector(i, Int(RingLayout::kE) + a.minus);
+        CornerVectors<5, T> out;
+        out.vectors[CornerLayout::kP] = pa;
+        out.vectors[CornerLayout::kEPlus] = ta;
+        out.vectors[CornerLayout::kEMinus] = in.vector(i, Int(RingLayout::kE) + a.minus);
         out.vectors[PmSector::kB211] = V(pm_raised(pa, ta) + T(k1 * T(one + Ca)) * U1 +
                                          T(k0 * T(two_mu_1 - Cb)) * U0 + lift * da);
         out.vectors[PmSector::kB121] = V(pm_raised(pb, tb) - T(k1 * T(one + Cb)) * U1 -
@@ -86,7 +86,8 @@ struct PmHullShader : SectorTables<kDomain_ == TessellatorDomain::Quad ? 4 : 3, 
 
     template <class T>
     EdgeRegister<T> patch_constant(PatchInput patch, ControlPoints<RingVertex<T>> const& in,
-                                   ControlPoints<SectorOf<5, T>> const& sectors, int_of<T> id) const
+                                   ControlPoints<CornerVectors<5, T>> const& corners,
+                                   int_of<T> id) const
     {
         using Int = int_of<T>;
         using V = float3<T>;
@@ -102,7 +103,7 @@ struct PmHullShader : SectorTables<kDomain_ == TessellatorDomain::Quad ? 4 : 3, 
             [&]() -> V { return pm_transversal<T>(patch, in, r.corner, r.which, r.far); }, value);
         value = when(
             middle,
-            [&]() -> V { return middle_point<T>(patch, in, sectors, id - Int(R::kMiddle)); },
+            [&]() -> V { return middle_point<T>(patch, in, corners, id - Int(R::kMiddle)); },
             value);
         return Tables::template packed<T>(r, value);
     }
@@ -140,8 +141,8 @@ private:
                                      int_of<T> j, int_of<T> k)
     {
         using Int = int_of<T>;
-        return float3<T>(in.vector(i, Int(RingLayout::kR) + j) -
-                         in.vector(i, Int(RingLayout::kR) + k));
+        return float3<T>(in.vector(i, Int(RingLayout::kSecond) + j) -
+                         in.vector(i, Int(RingLayout::kSecond) + k));
     }
 
     /// sum over the corners of w p + 9 h + 3 (g at both ends of the corner's + edge), over m
@@ -158,7 +159,7 @@ private:
             auto const a = Tables::template corner<T>(patch, here),
                        b = Tables::template corner<T>(patch, next);
             auto const face = [&](Int corner, Int j) -> V {
-                return in.vector(corner, Int(RingLayout::kR) + j);
+                return in.vector(corner, Int(RingLayout::kSecond) + j);
             };
             p = p + in.vector(here, Int(RingLayout::kP));
             V const ha = face(here, a.plus), hb = face(next, b.before(b.minus));
@@ -172,7 +173,7 @@ private:
     /// b112 of sector i, and the centre for i = m.
     template <class T>
     float3<T> middle_point(PatchInput patch, ControlPoints<RingVertex<T>> const& in,
-                           ControlPoints<SectorOf<5, T>> const& sectors, int_of<T> i) const
+                           ControlPoints<CornerVectors<5, T>> const& corners, int_of<T> i) const
     {
         using Int = int_of<T>;
         using V = float3<T>;
@@ -182,8 +183,8 @@ private:
             [&]() -> V {
                 Int const after = Tables::template next<T>(i),
                           opposite = Tables::template next<T>(after);
-                auto const x = [&](Int k) -> V { return sectors.vector(k, Int(PmSector::kB211)); };
-                auto const y = [&](Int k) -> V { return sectors.vector(k, Int(PmSector::kB121)); };
+                auto const x = [&](Int k) -> V { return corners.vector(k, Int(PmSector::kB211)); };
+                auto const y = [&](Int k) -> V { return corners.vector(k, Int(PmSector::kB121)); };
                 if constexpr (m == 4) {
                     Int const before = Tables::template previous<T>(i);
                     V const xi = x(i), yi = y(i), xn = x(after), yn = y(after), xp = x(before),
@@ -191,11 +192,11 @@ private:
                     V const near = xi + yi - yn - xp, far = xn + yp - xo - yo;
                     return cen + T(3.0 / 16) * near + T(1.0 / 16) * far;
                 } else { // (3 cen - s_(i+2)) / 2
-                    V const p = sectors.vector(opposite, Int(SectorLayout::kP));
+                    V const p = corners.vector(opposite, Int(CornerLayout::kP));
                     V const b310 =
-                        pm_raised(p, sectors.vector(opposite, Int(SectorLayout::kEPlus)));
+                        pm_raised(p, corners.vector(opposite, Int(CornerLayout::kEPlus)));
                     V const b130 =
-                        pm_raised(p, sectors.vector(opposite, Int(SectorLayout::kEMinus)));
+                        pm_raised(p, corners.vector(opposite, Int(CornerLayout::kEMinus)));
                     V const b301 = pm_join<m>(b310, b130, p);
                     V const s = pm_join<m>(x(opposite), y(after), b301);
                     return T(1.5) * cen - T(0.5) * s;
@@ -210,24 +211,24 @@ template <class Weight = float>
 struct PmRegularHullShader : PmHullShader<TessellatorDomain::Quad, Weight> {
     using Pm = PmHullShader<TessellatorDomain::Quad, Weight>;
     using Tables = typename Pm::Tables;
-    template <class T> using ControlPoint = SectorOf<4, T>;
+    template <class T> using ControlPoint = CornerVectors<4, T>;
 
     int patch_constants() const { return 5 * Pm::m; }
 
     template <class T>
-    SectorOf<4, T> control_point(PatchInput patch, ControlPoints<RingVertex<T>> const& in,
-                                 int_of<T> i) const
+    CornerVectors<4, T> control_point(PatchInput patch, ControlPoints<RingVertex<T>> const& in,
+                                      int_of<T> i) const
     {
         using Int = int_of<T>;
         auto const a = Tables::template corner<T>(patch, i);
         return {{in.vector(i, Int(RingLayout::kP)), in.vector(i, Int(RingLayout::kE) + a.plus),
                  in.vector(i, Int(RingLayout::kE) + a.minus),
-                 in.vector(i, Int(RingLayout::kR) + a.plus)}};
+                 in.vector(i, Int(RingLayout::kSecond) + a.plus)}};
     }
 
     template <class T>
     EdgeRegister<T> patch_constant(PatchInput patch, ControlPoints<RingVertex<T>> const& in,
-                                   ControlPoints<SectorOf<4, T>> const&, int_of<T> id) const
+                                   ControlPoints<CornerVectors<4, T>> const&, int_of<T> id) const
     {
         using Int = int_of<T>;
         using V = float3<T>;

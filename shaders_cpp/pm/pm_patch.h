@@ -1,5 +1,5 @@
-// Pm-patch (Myles, Ni, Peters 2008; sheet section 6): m quartic Bezier triangles that meet at a
-// centre; 6m + 1 coefficients, 25 for a quad and 19 for a triangle.
+// Pm-patch (Myles, Ni, Peters 2008; docs/math/loop09.md, 6): m quartic Bezier triangles that meet
+// at a centre; 6m + 1 coefficients, 25 for a quad and 19 for a triangle.
 //
 // A domain point lies in one sector, which needs 14 of the coefficients. Which ones depends on
 // (u,v), so the shader reads all of them, as LOOP09 counts: 5 vectors of each sector, and b112 of
@@ -8,8 +8,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "shaders_cpp/gregory/sector_domain_shaders.h"
 #include "shaders_cpp/pm/pm_hull_shader.h"
+#include "shaders_cpp/two_stage_form/by_corners.h"
 
 namespace tessemu {
 
@@ -51,7 +51,7 @@ template <class T> constexpr PmSectorPoint<3, T> pm_sector_of_triangle(T b0, T b
 /// \returns  position, and a quarter of the derivatives towards the two corners of the sector
 /// \cost     225 mul with the map for a quad (232 with the cross product)
 template <int m, class T>
-constexpr TangentFrame<T> pm_patch(ControlPoints<SectorOf<5, T>> const& sectors,
+constexpr TangentFrame<T> pm_patch(ControlPoints<CornerVectors<5, T>> const& corners,
                                    ControlPoints<EdgeRegister<T>> const& registers,
                                    PmSectorPoint<m, T> const& at)
 {
@@ -60,7 +60,7 @@ constexpr TangentFrame<T> pm_patch(ControlPoints<SectorOf<5, T>> const& sectors,
     Routine<T> const here("pm_patch");
     V all[m][6];
     for (int i = 0; i < m; ++i) {
-        for (int k = 0; k < 5; ++k) all[i][k] = sectors.vector(i, k);
+        for (int k = 0; k < 5; ++k) all[i][k] = corners.vector(i, k);
         all[i][5] = registers[R::kMiddle + i].vector;
     }
     V const centre = registers[R::kCentre].vector;
@@ -71,7 +71,7 @@ constexpr TangentFrame<T> pm_patch(ControlPoints<SectorOf<5, T>> const& sectors,
         return v;
     };
     constexpr int kBefore = m - 1, kB112 = 5;
-    using S = SectorLayout;
+    using S = CornerLayout;
     V const p0 = of(0, S::kP), p1 = of(1, S::kP), t0 = of(0, S::kEPlus), t1 = of(1, S::kEMinus);
     V const x = of(0, PmSector::kB211), y = of(0, PmSector::kB121), z = of(0, kB112);
     V const b310 = pm_raised(p0, t0), b130 = pm_raised(p1, t1);
@@ -90,31 +90,31 @@ constexpr TangentFrame<T> pm_patch(ControlPoints<SectorOf<5, T>> const& sectors,
     return quartic_triangle<T>(b, at.a, at.b, at.c);
 }
 
-template <int m> struct PmInside : GregoryEdges<m> {
+template <int m> struct PmInside : CubicEdges<m> {
     static constexpr TessellatorDomain kDomain =
         m == 4 ? TessellatorDomain::Quad : TessellatorDomain::Tri;
     static constexpr int kControlPoints = m;
-    template <class T> using ControlPoint = SectorOf<5, T>;
-    template <class T> using Sectors = ControlPoints<SectorOf<5, T>>;
-    template <class T> using View = SectorPatch<m, 5, T>;
+    template <class T> using ControlPoint = CornerVectors<5, T>;
+    template <class T> using Corners = ControlPoints<CornerVectors<5, T>>;
+    template <class T> using View = CornersAsPatch<m, 5, T>;
 
     template <class T>
-    static constexpr TangentFrame<T> evaluate(Sectors<T> const& sectors,
+    static constexpr TangentFrame<T> evaluate(Corners<T> const& corners,
                                               ControlPoints<EdgeRegister<T>> const& registers,
                                               DomainInput<T> const& in)
     {
         if constexpr (m == 4)
-            return pm_patch<m, T>(sectors, registers, pm_sector_of_quad<T>(in.u, in.v));
+            return pm_patch<m, T>(corners, registers, pm_sector_of_quad<T>(in.u, in.v));
         else
-            return pm_patch<m, T>(sectors, registers, pm_sector_of_triangle<T>(in.u, in.v, in.w));
+            return pm_patch<m, T>(corners, registers, pm_sector_of_triangle<T>(in.u, in.v, in.w));
     }
-    template <class T> static constexpr EdgeCurve<T> edge(Sectors<T> const& sectors, int k)
+    template <class T> static constexpr EdgeCurve<T> edge(Corners<T> const& corners, int k)
     {
-        return cubic_edge<m>(View<T>(sectors), k);
+        return cubic_edge<m>(View<T>(corners), k);
     }
-    template <class T> static constexpr float3<T> corner(Sectors<T> const& sectors, int i)
+    template <class T> static constexpr float3<T> corner(Corners<T> const& corners, int i)
     {
-        return sectors.vector(i, SectorLayout::kP);
+        return corners.vector(i, CornerLayout::kP);
     }
     template <class T>
     static constexpr float3<T> corner_normal(ControlPoints<EdgeRegister<T>> const& registers, int i)

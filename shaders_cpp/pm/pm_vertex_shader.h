@@ -1,21 +1,29 @@
-// Vertex shader of Pm-patches (Myles, Ni, Peters 2008; sheet section 6), over one-ring textures as
-// LOOP09 section 4.1 has them.
+// Vertex shader of Pm-patches (Myles, Ni, Peters 2008; docs/math/loop09.md, 6), over one-ring
+// textures as LOOP09 section 4.1 has them.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "shaders_cpp/ring_vertex.h"
+#include "shaders_cpp/two_stage_form/ring_vertex.h"
 
 namespace tessemu {
 
-/// Numbers by valence, a row each: n^2, 4 and 1, all over n(n+5), for p; then for each j the
-/// weights of g_j in A and B and those of A and B in t_j - p.
+/// Numbers that depend on a vertex's valence n alone, a row of kRow floats each:
+///
+///     [0], [1], [2]   p = [0] v + [1] sum d_j + [2] sum y_j     n^2, 4 and 1 over n (n+5)
+///     then four for each edge j:
+///     [0]             A += [0] g_j                              cos(2pi j/n) / (n lambda(n))
+///     [1]             B += [1] g_j                              the sine in its place
+///     [2], [3]        t_j = p + [2] A + [3] B                   cos(2pi j/n), sin(2pi j/n)
+///
+/// d_j: far end of edge j. y_j: vertex opposite in face j. g_j: edge j's mean of the face points.
 struct PmConstants {
     static constexpr int kEach = 4;
     static constexpr int kRow = 3 + kEach * RingLayout::kEdges;
 };
 
-/// Puts out p, the normal A x B, edge points t_j and face points h_j. Interior vertices only.
+/// Puts out p, the normal A x B, edge points t_j and, as the ring's second vectors, face points
+/// h_j. Interior vertices only.
 ///
 /// \tparam Weight  float; double in tests of the formulas
 template <class Weight = float> struct PmVertexShader : RingTextures {
@@ -30,8 +38,7 @@ template <class Weight = float> struct PmVertexShader : RingTextures {
     }
 
     /// \cost  21n + 18 mul, and 3 more for each triangle of the ring: per face 6 for h_j, 3 for
-    /// g_j, 6
-    ///        for A and B, 6 for t_j; 3 for 4v, 9 for p, 6 for the normal
+    ///        g_j, 6 for A and B, 6 for t_j; 3 for 4v, 9 for p, 6 for the normal
     template <class T>
     RingVertex<T> operator()(VertexInput<T> const& in, ControlVertex<T> const& stream) const
     {
@@ -100,7 +107,7 @@ template <class Weight = float> struct PmVertexShader : RingTextures {
         for (int j : loop<T>(kEdges)) {
             out.vectors[std::size_t(RingLayout::kE + j)] = when(
                 Int(j) < n, [&]() -> V { return p + of_edge(j, 2) * A + of_edge(j, 3) * B; }, zero);
-            out.vectors[std::size_t(RingLayout::kR + j)] = h[j];
+            out.vectors[std::size_t(RingLayout::kSecond + j)] = h[j];
         }
         return out;
     }

@@ -3,8 +3,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/watertight.h"
 
+#include "analysis/mistakes.h"
 #include "io/model.h"
+#include "pipeline/schemes/scheme.h"
 #include "tests/support/files.h"
+#include "tests/support/stencil_patch.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -20,26 +23,34 @@ namespace {
 class Case {
 public:
     Case(std::string const& model, char const* scheme)
+        : on_(build_scheme(find_scheme(scheme), load_model(model).mesh))
     {
-        Technique const& technique = find_technique(scheme);
-        mesh = prepare_mesh(load_model(model).mesh, technique);
-        patches = technique.build(*mesh.topology, {});
         settings.frame.width = settings.frame.height = 256;
         settings.frame.tess_factor = 7.3f;
-        settings.frame.camera = frame_points(mesh.mesh->positions, {0.4f, 0.3f, 1}, 1);
+        settings.frame.camera = frame_points(mesh().positions, {0.4f, 0.3f, 1}, 1);
         settings.rays = 20000;
     }
+    ControlMesh const& mesh() const { return on_.mesh->mesh(); }
+    PatchMesh const& patches() const { return mistaken_ ? *mistaken_ : *on_.patches; }
+    /// For the settings as they are.
+    void plant(PlantedMistake const& mistake)
+    {
+        mistaken_ = with_mistake(*on_.patches, mistake, settings.frame);
+    }
+    void plant(Mistake kind) { plant(plant_mistake(*on_.mesh, kind)); }
     std::map<std::string, CheckedVerdict> check() const
     {
         std::map<std::string, CheckedVerdict> out;
-        for (CheckedVerdict& v : check_watertight(*mesh.topology, *patches, settings, ThreadPool()))
+        for (CheckedVerdict& v : check_watertight(patches(), settings, ThreadPool()))
             out[v.name] = std::move(v);
         return out;
     }
 
-    PreparedMesh mesh;
-    std::unique_ptr<PatchMesh> patches;
     WatertightSettings settings;
+
+private:
+    SchemeOnMesh on_;
+    std::unique_ptr<PatchMesh> mistaken_;
 };
 
 using Verdicts = std::map<std::string, CheckedVerdict>;
@@ -75,7 +86,7 @@ TEST(Watertight, EverySchemePassesPlainDisplacedAnimatedAndAdaptive)
             EXPECT_EQ(v.at("raycast").verdict, Verdict::Pass);
         }
         f.displacement = std::make_shared<Displacement>(Displacement::studs(0.2f, 0.02f));
-        f.pose = std::make_shared<Pose>(SpineRig(*c.mesh.mesh).sway(0.3));
+        f.pose = std::make_shared<Pose>(SpineRig(c.mesh()).sway(0.3));
         Verdicts const v = c.check();
         expect_clean(v, name + ", displaced and animated");
         EXPECT_EQ(v.at("displaced").verdict, Verdict::Pass);
@@ -83,7 +94,7 @@ TEST(Watertight, EverySchemePassesPlainDisplacedAnimatedAndAdaptive)
         f.adaptive = {AdaptiveFactors::Kind::Pixels, 6};
         expect_clean(c.check(), name + ", adaptive");
         f.adaptive = {};
-        f.parity = 0.01f;
+        f.finish.parity = 0.01f;
         expect_clean(c.check(), name + ", moved by parity");
     }
 }
@@ -134,11 +145,11 @@ TEST(Watertight, EachMistakeFlipsTheVerdictsThatItMust)
                 std::string_view(scheme) == "gregory-two-stage" || std::string_view(scheme) == "pm";
             if (e.mistake == Mistake::Weights && two_stage) continue;
             Case c("golem", scheme);
-            c.settings.frame.mistake = plant_mistake(*c.mesh.topology, e.mistake);
-            c.settings.frame.parity = e.parity;
+            c.settings.frame.finish.parity = e.parity;
             if (e.displaced)
                 c.settings.frame.displacement =
                     std::make_shared<Displacement>(Displacement::studs(0.2f, 0.05f));
+            c.plant(e.mistake);
             Verdicts const v = c.check();
             for (std::size_t i = 0; i < 6; ++i) {
                 Verdict const is = v.at(kNames[i]).verdict;
@@ -157,11 +168,27 @@ TEST(Watertight, EachMistakeFlipsTheVerdictsThatItMust)
         }
 }
 
+TEST(Mistakes, AreRefusedWhereTheyCannotBePlanted)
+{
+    Case c("golem", "gregory-two-stage");
+    EXPECT_THROW(c.plant(Mistake::Weights), Error) << "its vertices belong to all patches";
+    c.settings.frame.direct3d10 = true;
+    EXPECT_THROW(c.plant(Mistake::Factors), Error) << "the tessellator's";
+    EXPECT_THROW(c.plant(Mistake::Fold), Error);
+    EXPECT_NO_THROW(c.plant(Mistake::Order));
+    SchemeOnMesh const phong =
+        build_scheme(find_scheme("phong"), test::mesh_from(nlohmann::json::parse(test::read_text(
+                                               test::golden("loop09/tetrahedron.json")))));
+    for (Mistake m : {Mistake::Order, Mistake::Contraction, Mistake::Normals, Mistake::Weights})
+        EXPECT_THROW(with_mistake(*phong.patches, {m, 0}, {}), Error) << name_of(m);
+    EXPECT_NO_THROW(with_mistake(*phong.patches, {Mistake::Fold, 0}, {}));
+}
+
 TEST(Watertight, AFailureNamesPatchesEdgeValuesAndDistance)
 {
     Case c("golem", "gregory-stencil");
     c.settings.rays = 0;
-    c.settings.frame.mistake = plant_mistake(*c.mesh.topology, Mistake::Order);
+    c.plant(Mistake::Order);
     Verdicts const order = c.check();
     EXPECT_EQ(order.at("raycast").verdict, Verdict::Skipped);
     CrackSite const& site = order.at("position").sites.at(0);
@@ -174,22 +201,21 @@ TEST(Watertight, AFailureNamesPatchesEdgeValuesAndDistance)
 
     // Mistakes of one patch are found at that patch and nowhere else.
     for (Mistake m : {Mistake::Factors, Mistake::Weights}) {
-        c.settings.frame.mistake = plant_mistake(*c.mesh.topology, m);
-        c.settings.frame.mistake.face = 30;
+        c.plant({m, 30});
         Verdicts const v = c.check();
         CheckedVerdict const& failed = v.at(m == Mistake::Factors ? "topology" : "position");
         ASSERT_EQ(failed.verdict, Verdict::Fail) << name_of(m);
         std::set<std::uint32_t> const corners = [&] {
-            auto const face = c.mesh.mesh->face(30);
+            auto const face = c.mesh().face(30);
             return std::set<std::uint32_t>(face.begin(), face.end());
         }();
         for (CrackSite const& s : failed.sites)
             EXPECT_TRUE(corners.count(s.vertex[0]) && corners.count(s.vertex[1])) << s.text;
     }
-    c.settings.frame.mistake = plant_mistake(*c.mesh.topology, Mistake::Fold);
-    ColorTarget const picture = draw_cracks(
-        *c.patches, c.settings,
-        check_watertight(*c.mesh.topology, *c.patches, c.settings, ThreadPool()), ThreadPool());
+    c.plant(Mistake::Fold);
+    ColorTarget const picture =
+        draw_cracks(c.patches(), c.settings,
+                    check_watertight(c.patches(), c.settings, ThreadPool()), ThreadPool());
     std::size_t red = 0;
     for (int y = 0; y < 256; ++y)
         for (int x = 0; x < 256; ++x) {
@@ -323,10 +349,10 @@ TEST_P(OnModels, GregorySchemesPassUnderAHundredContractions)
         c.settings.rays = 0;
         c.settings.frame.machine.contraction = Contraction::Mixed;
         glm::vec3 low(INFINITY), high(-INFINITY);
-        for (glm::vec3 const& p : c.mesh.mesh->positions) low = min(low, p), high = max(high, p);
+        for (glm::vec3 const& p : c.mesh().positions) low = min(low, p), high = max(high, p);
         float const size = glm::length(high - low);
         auto const map = std::make_shared<Displacement>(Displacement::studs(size / 16, size / 100));
-        SpineRig const rig(*c.mesh.mesh);
+        SpineRig const rig(c.mesh());
         FrameSettings& f = c.settings.frame;
         for (int seed = 0; seed < seeds; ++seed) { // plain, displaced, animated, adaptive in turn
             f.machine.seed = std::uint64_t(seed);

@@ -84,9 +84,9 @@ std::uint64_t picture(int threads, Machine const& machine)
     shader.texture = Texture2D(mips, 16, 16, 2, "noise", levels);
     shader.sampler.address_u = AddressMode::Wrap;
     shader.sampler.address_v = AddressMode::Mirror;
-    s.desc.vertex_shader = make_vertex_program(SceneVertexShader{}, machine);
-    s.desc.pixel_shader = make_pixel_program(shader, machine);
-    s.desc.geometry_shader = make_geometry_program(Mirror{}, machine);
+    s.desc.vertex_shader = bind_vertex_shader(SceneVertexShader{}, machine);
+    s.desc.pixel_shader = bind_pixel_shader(shader, machine);
+    s.desc.geometry_shader = bind_geometry_shader(Mirror{}, machine);
     s.desc.stream_output = StreamOutputDesc{{{0, 0, 8, 1}}, {}, 0};
     std::vector<std::byte> streamed(1 << 17);
     StreamOutputBuffer buffers[2] = {{}, {streamed, 0}};

@@ -94,10 +94,10 @@ struct TriDomain : Bilinear<4> {
 GraphicsPipelineDesc patch_desc(Hull const& hull = {})
 {
     GraphicsPipelineDesc d;
-    d.vertex_shader = make_vertex_program(PassThrough{}, {});
-    d.hull_shader = make_hull_program(hull, {});
-    d.domain_shader = make_domain_program(Bilinear<4>{}, {});
-    d.pixel_shader = make_pixel_program(FlatColor{}, {});
+    d.vertex_shader = bind_vertex_shader(PassThrough{}, {});
+    d.hull_shader = bind_hull_shader(hull, {});
+    d.domain_shader = bind_domain_shader(Bilinear<4>{}, {});
+    d.pixel_shader = bind_pixel_shader(FlatColor{}, {});
     d.partitioning = Partitioning::Integer;
     d.input_control_points = 4;
     return d;
@@ -120,8 +120,8 @@ TEST(GraphicsPipeline, R3R49R50R79RefusesWhatD3D11RefusesAndNamesValueAndLimit)
     d.input_control_points = 33;
     expect_refused(d, "control points per patch is 33, the limit is 32");
     d = patch_desc();
-    d.hull_shader = make_hull_program(Hull{33}, {});
-    d.domain_shader = make_domain_program(Bilinear<33>{}, {});
+    d.hull_shader = bind_hull_shader(Hull{33}, {});
+    d.domain_shader = bind_domain_shader(Bilinear<33>{}, {});
     expect_refused(d, "output control points is 33, the limit is 32");
     // R49: 128 scalars of patch constants, six tess factors included: 30 registers fit, 31 do not.
     EXPECT_NO_THROW(GraphicsPipeline{patch_desc(Hull{4, 30})});
@@ -131,15 +131,15 @@ TEST(GraphicsPipeline, R3R49R50R79RefusesWhatD3D11RefusesAndNamesValueAndLimit)
     d.domain_shader = nullptr;
     expect_refused(d, "R3");
     d = patch_desc();
-    d.domain_shader = make_domain_program(Bilinear<5>{}, {});
+    d.domain_shader = bind_domain_shader(Bilinear<5>{}, {});
     expect_refused(d, "number of control points");
     d = patch_desc();
-    d.domain_shader = make_domain_program(TriDomain{}, {});
+    d.domain_shader = bind_domain_shader(TriDomain{}, {});
     expect_refused(d, "R79");
     d = patch_desc();
     d.output_primitive = OutputPrimitive::Line;
     expect_refused(d, "R75");
-    EXPECT_THROW(make_pixel_program(FlatColor{}, Machine{5}), Error);
+    EXPECT_THROW(bind_pixel_shader(FlatColor{}, Machine{5}), Error);
 }
 
 std::vector<float> quad_vertices(float depth = 0.5f)
@@ -211,8 +211,8 @@ TEST(PipelineStatistics, R42I3NonIndexedVerticesNeverHitTheCache)
     call.set_vertices(vertices, 7);
     call.vertex_count = 6;
     GraphicsPipelineDesc d;
-    d.vertex_shader = make_vertex_program(PassThrough{}, {});
-    d.pixel_shader = make_pixel_program(FlatColor{}, {});
+    d.vertex_shader = bind_vertex_shader(PassThrough{}, {});
+    d.pixel_shader = bind_pixel_shader(FlatColor{}, {});
     Target target(16);
     RasterTarget const raster = target.raster(false);
     DrawOptions options;

@@ -106,9 +106,9 @@ Counts run(Machine const& machine, int threads, bool skip_second)
     ds.texture = {texels, 2, 1, 3, "texture"};
     ds.skip_second = skip_second;
     GraphicsPipelineDesc desc;
-    desc.vertex_shader = make_vertex_program(PassThroughVertex{}, machine);
-    desc.hull_shader = make_hull_program(QuadHull{4}, machine);
-    desc.domain_shader = make_domain_program(ds, machine);
+    desc.vertex_shader = bind_vertex_shader(PassThroughVertex{}, machine);
+    desc.hull_shader = bind_hull_shader(QuadHull{4}, machine);
+    desc.domain_shader = bind_domain_shader(ds, machine);
     desc.partitioning = Partitioning::Integer;
     desc.input_control_points = 4;
     DrawCall call;
@@ -190,6 +190,7 @@ RC_GTEST_PROP(Buffer, PerLaneLoadsReadAndCountLikeSingleOnes, ())
     slots[2].touched = &touched;
     execution = Execution{};
     execution.buffers = slots.data();
+    execution.buffer_slots = std::uint32_t(slots.size());
     std::set<std::int32_t> expected;
     std::uint64_t fetches = 0;
     for (int turn = 0; turn < 4; ++turn) {

@@ -66,8 +66,8 @@ Scene draw_triangles(std::vector<std::array<float, 4>> const& corners,
     call.set_vertices(vertices, 6);
     call.vertex_count = std::uint32_t(corners.size());
     GraphicsPipelineDesc d;
-    d.vertex_shader = make_vertex_program(PassThrough{}, {});
-    d.pixel_shader = make_pixel_program(ShowAttributes{}, {});
+    d.vertex_shader = bind_vertex_shader(PassThrough{}, {});
+    d.pixel_shader = bind_pixel_shader(ShowAttributes{}, {});
     Scene s;
     RasterTarget raster{{&s.color}, &s.depth, {{0, 0, kSize, kSize, 0, 1}}, {rect}};
     raster.rasterizer.cull = cull;

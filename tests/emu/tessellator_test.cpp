@@ -1,7 +1,7 @@
 // The tessellator against golden data, closed forms and exhaustion.
 //
 // SPDX-License-Identifier: Apache-2.0
-#include "emu/tessellator.h"
+#include "emu/domain_points.h"
 
 #include "emu/floating_point.h"
 #include "tests/support/files.h"

@@ -97,8 +97,8 @@ RC_GTEST_PROP(TriangleStream, SoupsEqualTheReadersRasterizerInEveryBitAndCount, 
 {
     Soup const s = soup();
     GraphicsPipelineDesc d;
-    d.vertex_shader = make_vertex_program(PassThrough{}, {});
-    d.pixel_shader = make_pixel_program(ShowAll{}, {});
+    d.vertex_shader = bind_vertex_shader(PassThrough{}, {});
+    d.pixel_shader = bind_pixel_shader(ShowAll{}, {});
     DrawCall call;
     call.topology = PrimitiveTopology::TriangleList;
     call.set_vertices(s.vertices, 9);
@@ -115,7 +115,7 @@ RC_GTEST_PROP(TriangleStream, SoupsEqualTheReadersRasterizerInEveryBitAndCount, 
     raster.rasterizer.guard_band_px = s.guard;
     raster.depth_stencil.depth_func = s.func;
 
-    test::ReferenceRasterizer reference(raster, *d.pixel_shader, background);
+    test::ReferenceRasterizer reference(raster, d.pixel_shader, background);
     for (std::size_t t = 0; t < s.indices.size() / 3; ++t) {
         std::array<std::vector<float>, 3> v;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -137,7 +137,7 @@ RC_GTEST_PROP(TriangleStream, SoupsEqualTheReadersRasterizerInEveryBitAndCount, 
         RC_ASSERT(n.pipeline.CPrimitives == reference.clip_primitives);
         RC_ASSERT(n.pipeline.PSInvocations == reference.passed);
         RC_ASSERT(n.samples_passed == reference.passed);
-        FlopCount const flops = d.pixel_shader->probe().flops * reference.passed;
+        FlopCount const flops = d.pixel_shader.probe().flops * reference.passed;
         for (StageStatistics const& stage : n.stages)
             if (stage.stage == "pixel_shader") RC_ASSERT(stage.flops == flops);
     }

@@ -32,12 +32,13 @@ TEST(ImageWriter, WritesPngAndExrAndLeavesNothingElse)
     target.clear({0.25f, 0.5f, 1.0f, 1.0f}, ThreadPool(1));
     write_image(target, folder / "a.png");
     write_image(target, folder / "a.exr");
-    std::size_t files = 0;
-    for (auto const& entry : fs::directory_iterator(folder)) {
-        ++files;
-        EXPECT_GT(entry.file_size(), 0u);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 2);
+    for (auto const& [name, red] : {std::pair("a.png", 64.0f / 255), {"a.exr", 0.25f}}) {
+        HeightImage const image = read_height_image(folder / name);
+        EXPECT_EQ(image.width, 5) << name;
+        EXPECT_EQ(image.height, 3) << name;
+        EXPECT_EQ(image.heights, std::vector<float>(15, red)) << name;
     }
-    EXPECT_EQ(files, 2u);
     EXPECT_EQ(test::read_text(folder / "a.png").substr(1, 3), "PNG");
 }
 

@@ -1,11 +1,13 @@
 // Patch corners lie on the Catmull-Clark limit surface.
 //
 // SPDX-License-Identifier: Apache-2.0
-#include "io/mesh_writer.h"
 #include "io/model.h"
+#include "pipeline/frame.h"
+#include "pipeline/schemes/scheme.h"
 #include "tests/support/files.h"
 #include "tests/support/gzip.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,36 +60,36 @@ TEST_P(LimitSurfaceOn, ExportedPatchCornersAgreeToOneMillionthOfTheDiagonal)
     std::string const name = GetParam();
     TESSEMU_NEEDS_SHARED("models/" + name + ".obj");
     TESSEMU_NEEDS_SHARED("golden/limit/" + name + ".csv.gz");
-    Technique const& technique = find_technique("gregory-stencil");
-    PreparedMesh const m =
-        prepare_mesh(load_model(test::shared("models/" + name + ".obj").string()).mesh, technique);
-    auto const patches = technique.build(*m.topology, {});
+    SchemeOnMesh const m =
+        build_scheme(find_scheme("gregory-stencil"),
+                     load_model(test::shared("models/" + name + ".obj").string()).mesh);
     LimitCorners const limit =
-        read_limit(test::shared("golden/limit/" + name + ".csv.gz"), *m.mesh);
+        read_limit(test::shared("golden/limit/" + name + ".csv.gz"), m.mesh->base());
     std::size_t compared = 0;
     double worst = 0;
-    visit_surface(*patches, {}, ThreadPool(), [&](DrawPass const& pass, ShadedPatch const& p) {
-        PatchOrigin const& origin = pass.patches[p.primitive_id];
-        for (std::size_t i = 0; i < p.points->patch.points(); ++i) {
-            FacePoint const at = domain_to_face(origin, p.points->u[i], p.points->v[i]);
+    visit_surface(*m.patches, {}, ThreadPool(), [&](SurfacePatch const& patch) {
+        PatchPlace const& place = patch.place();
+        for (std::size_t i = 0; i < patch.points(); ++i) {
+            UnitPoint const at = domain_to_unit(place, patch.domain().u[i], patch.domain().v[i]);
             int corner;
-            if (origin.sides == 4)
+            if (place.sides == 4)
                 corner = at.v == 0 ? (at.u == 0 ? 0 : 1) : (at.u == 1 ? 2 : 3);
             else
                 corner = at.u == 1 ? 0 : at.v == 1 ? 1 : 2;
-            auto const it = limit.at.find({origin.face, corner});
+            auto const it = limit.at.find({place.face, corner});
             ASSERT_NE(it, limit.at.end());
+            glm::vec3 const p = patch.vertex(i).position;
             double d2 = 0;
-            for (std::size_t k = 0; k < 3; ++k)
-                d2 += std::pow(double(p.outputs[k * p.stride + i]) - it->second[k], 2);
+            for (int k = 0; k < 3; ++k)
+                d2 += std::pow(double(p[k]) - it->second[std::size_t(k)], 2);
             worst = std::max(worst, std::sqrt(d2) / limit.diagonal);
             ++compared;
         }
     });
     EXPECT_EQ(compared, limit.at.size());
     EXPECT_LE(worst, 1e-6);
-    std::printf("%s: %zu corners, worst distance %.2g of the diagonal\n", name.c_str(), compared,
-                worst);
+    RecordProperty("corners", std::to_string(compared));
+    RecordProperty("worst_distance_in_diagonals", fmt::format("{:.2g}", worst));
 }
 INSTANTIATE_TEST_SUITE_P(Models, LimitSurfaceOn,
                          testing::Values("bigguy", "monsterfrog", "suzanne", "chamfer_cube",

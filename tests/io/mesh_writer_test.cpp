@@ -3,6 +3,7 @@
 
 #include "io/atomic_file.h"
 #include "io/model.h"
+#include "pipeline/schemes/scheme.h"
 #include "tests/support/files.h"
 
 #include <gtest/gtest.h>
@@ -32,14 +33,12 @@ struct Exported {
 
 Exported export_model(std::string const& model, fs::path const& path, bool weld, float tess)
 {
-    Technique const& technique = find_technique("gregory-stencil");
-    PreparedMesh const m = prepare_mesh(load_model(model).mesh, technique);
-    auto const patches = technique.build(*m.topology, {});
+    SchemeOnMesh const m = build_scheme(find_scheme("gregory-stencil"), load_model(model).mesh);
     MeshWriter writer(path, weld);
     FrameSettings s;
     s.tess_factor = tess;
-    visit_surface(*patches, s, ThreadPool(2),
-                  [&](DrawPass const& pass, ShadedPatch const& p) { writer.add(pass, p); });
+    visit_surface(*m.patches, s, ThreadPool(2),
+                  [&](SurfacePatch const& patch) { writer.add(patch); });
     writer.finish();
     return {writer.vertices(), writer.triangles()};
 }
@@ -108,17 +107,19 @@ TEST(MeshWriter, LeavesNothingBehindUnlessFinished)
     EXPECT_THROW(MeshWriter(scratch() / "missing" / "a.obj", false), WriteError);
 }
 
-TEST(DomainToFace, TurnsCornersBackExactly)
+TEST(DomainToUnit, TurnsCornersBackExactly)
 {
     float const corners[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     for (std::uint8_t r = 0; r < 4; ++r)
         for (int i = 0; i < 4; ++i) {
-            FacePoint const p = domain_to_face({0, r, 4}, corners[i][0], corners[i][1]);
+            PatchPlace const place{.sides = 4, .rotation = r};
+            UnitPoint const p = domain_to_unit(place, corners[i][0], corners[i][1]);
             EXPECT_EQ(p.u, corners[(i + r) % 4][0]);
             EXPECT_EQ(p.v, corners[(i + r) % 4][1]);
         }
     for (std::uint8_t r = 0; r < 3; ++r) {
-        FacePoint const p = domain_to_face({0, r, 3}, 1, 0); // the patch's corner 0
+        // The patch's corner 0.
+        UnitPoint const p = domain_to_unit({.sides = 3, .rotation = r}, 1, 0);
         EXPECT_EQ(p.u, r == 0 ? 1 : 0);
         EXPECT_EQ(p.v, r == 1 ? 1 : 0);
     }

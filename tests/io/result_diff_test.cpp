@@ -54,9 +54,8 @@ TEST(ResultDiff, HashesCountWithoutAToleranceOnly)
 TEST(ResultDiff, ElementsGoByNameAndMissingOnesDiffer)
 {
     std::string const b = replaced(kA, R"({"resource": "a", "count": 5}, )", "");
-    EXPECT_EQ(differing(kA, b),
-              (std::vector<std::string>{"stages.vertex_shader.fetches.a.resource",
-                                        "stages.vertex_shader.fetches.a.count"}));
+    EXPECT_EQ(differing(kA, b), (std::vector<std::string>{"stages.vertex_shader.fetches.a.resource",
+                                                          "stages.vertex_shader.fetches.a.count"}));
     EXPECT_EQ(differing(b, kA).size(), 2u);
     EXPECT_EQ(differing(kA, replaced(kA, "\"count\": 6", "\"count\": \"6\""), 1).size(), 1u);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/connectivity.h"
+#include "pipeline/mesh/connectivity.h"
 
 #include "io/model.h"
-#include "pipeline/patch_stencils.h"
-#include "pipeline/technique.h"
+#include "pipeline/schemes/gregory/stencils.h"
+#include "pipeline/schemes/scheme.h"
 #include "tests/support/files.h"
 
 #include <gtest/gtest.h>
@@ -89,9 +89,8 @@ TEST(GregoryStencil, RefusesAPatchPastThirtyTwoInputsAndNamesIt)
 {
     TESSEMU_NEEDS_SHARED("models/bad/valence40.obj");
     ControlMesh const m = load_model(test::shared("models/bad/valence40.obj").string()).mesh;
-    Topology const t(m);
     try {
-        (void)find_technique("gregory-stencil").build(t, {});
+        (void)build_scheme(find_scheme("gregory-stencil"), m);
         FAIL();
     } catch (LimitError const& e) {
         EXPECT_NE(std::string(e.what()).find("valences 40, 3, 2, 3"), std::string::npos)
@@ -106,10 +105,9 @@ TEST(GregoryStencil, HolesAndBoundaryRuleNoneAreNotDrawn)
     ControlMesh m = load_model("saddle_star").mesh;
     std::size_t const faces = m.faces();
     auto const drawn = [&] {
-        Topology const t(m);
         std::size_t n = 0;
-        auto const patches = find_technique("gregory-stencil").build(t, {});
-        for (PatchCount const& c : patches->patch_counts()) n += c.patches;
+        SchemeOnMesh const on = build_scheme(find_scheme("gregory-stencil"), m);
+        for (PatchCount const& c : on.patches->patch_counts()) n += c.patches;
         return n;
     };
     EXPECT_EQ(drawn(), faces);

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/model.h"
 #include "pipeline/frame.h"
+#include "pipeline/schemes/scheme.h"
 #include "tests/support/reference_rasterizer.h"
 
 #include <gtest/gtest.h>
@@ -22,20 +23,21 @@ struct Case {
 
 void expect_same(Case const& c, int threads, Machine const& machine = {})
 {
-    Technique const& technique = find_technique("gregory-stencil");
-    PreparedMesh const m = prepare_mesh(load_model(c.model).mesh, technique);
-    auto const patches = technique.build(*m.topology, {});
-    Camera camera = frame_points(m.mesh->positions, {0.5f, 0.4f, 1}, 1);
+    SchemeOnMesh const m = build_scheme(find_scheme("gregory-stencil"), load_model(c.model).mesh);
+    Camera camera = frame_points(m.mesh->mesh().positions, {0.5f, 0.4f, 1}, 1);
     camera.focal *= c.focal;
 
-    PassSettings settings;
+    SurfaceSettings settings;
     settings.tess_factor = c.tess;
     settings.partitioning = c.partitioning;
     settings.machine = machine;
-    settings.view_projection = view_projection(camera, 1);
-    settings.pixel_shader = [&](PatchKind const& kind) {
-        return make_view(View::Patches, kind, camera, nullptr, machine);
-    };
+    settings.finish.view_projection = view_projection(camera, 1);
+    CommandList list = m.patches->commands(settings);
+    std::vector<PixelShader> shaders; // of the draws, in order
+    list.for_each_surface_draw([&](Draw& d) {
+        d.pipeline.pixel_shader = make_view(View::Patches, d.kind, camera, nullptr, machine);
+        shaders.push_back(d.pipeline.pixel_shader);
+    });
     std::array<float, 4> const background{0, 0, 0, 0};
     ThreadPool const pool(threads);
     ColorTarget color(kSize, kSize);
@@ -46,40 +48,30 @@ void expect_same(Case const& c, int threads, Machine const& machine = {})
     raster.rasterizer.cull = c.cull;
     raster.rasterizer.front_counter_clockwise = true;
 
-    PipelineStatistics drawn;
+    DrawStatistics const drawn = run_commands(list, pool, {&raster}).total;
     std::uint64_t covered = 0;
-    std::vector<DrawPass> const passes = patches->passes(settings);
-    for (DrawPass const& pass : passes) {
-        DrawStatistics const n = draw(pass.pipeline, pass.call, &raster, {}, pool);
-        drawn += n.pipeline;
-        for (StageStatistics const& s : n.stages)
-            if (s.stage == "rasterizer") covered += s.output_bytes / 4;
-    }
-    // One picture of all passes: their pixel shaders take turns.
-    test::ReferenceRasterizer sum(raster, *passes[0].pipeline.desc().pixel_shader, background);
-    for (DrawPass const& pass : passes) {
-        sum.use(*pass.pipeline.desc().pixel_shader);
-        draw(
-            pass.pipeline, pass.call, nullptr,
-            [&](ShadedPatch const& p) {
-                auto const& index = p.points->patch.indices;
-                for (std::size_t t = 0; t < index.size(); t += 3) {
-                    std::array<std::vector<float>, 3> v;
-                    for (std::size_t k = 0; k < 3; ++k)
-                        for (std::size_t i = 0; i < 7; ++i)
-                            v[k].push_back(p.outputs[i * p.stride + index[t + k]]);
-                    sum.triangle(v, std::int32_t(p.primitive_id));
-                }
-            },
-            pool);
-    }
+    for (StageStatistics const& s : drawn.stages)
+        if (s.stage == "rasterizer") covered += s.output_bytes / 4;
+    // One picture of all draws: their pixel shaders take turns.
+    test::ReferenceRasterizer sum(raster, shaders[0], background);
+    std::size_t draws = 0;
+    CommandOptions options;
+    options.visit = [&](SurfacePatch const& p) {
+        if (p.number() == 0) sum.use(shaders[draws++]);
+        auto const& index = p.triangles();
+        for (std::size_t t = 0; t < index.size(); t += 3)
+            sum.triangle({p.scalars(index[t]), p.scalars(index[t + 1]), p.scalars(index[t + 2])},
+                         std::int32_t(p.number()));
+    };
+    run_commands(list, pool, options);
+    EXPECT_EQ(draws, shaders.size());
     SCOPED_TRACE(std::string(c.model) + " tess " + std::to_string(c.tess) + " checking " +
                  std::to_string(machine.checking));
     EXPECT_GT(sum.passed, 1000u);
     EXPECT_EQ(sum.differing_pixels(color, depth), 0u);
-    EXPECT_EQ(drawn.CInvocations, sum.clip_invocations);
-    EXPECT_EQ(drawn.CPrimitives, sum.clip_primitives);
-    EXPECT_EQ(drawn.PSInvocations, sum.passed);
+    EXPECT_EQ(drawn.pipeline.CInvocations, sum.clip_invocations);
+    EXPECT_EQ(drawn.pipeline.CPrimitives, sum.clip_primitives);
+    EXPECT_EQ(drawn.pipeline.PSInvocations, sum.passed);
     EXPECT_EQ(covered, sum.fragments);
 }
 

@@ -3,7 +3,7 @@
 // they are made for, that is wherever the ring is entered and however the inputs are numbered.
 //
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/vertex_stencils.h"
+#include "pipeline/forms/vertex_stencils.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/catmull_clark.h"
+#include "pipeline/mesh/catmull_clark.h"
 
 #include "io/model.h"
 #include "io/obj_reader.h"
@@ -107,6 +107,28 @@ TEST(Topology, SaysWhatIsWrongAndWhere)
     EXPECT_NE(refusal("f 1 2 5\nf 5 6 9\n").find("vertex 5 form more than one fan"),
               std::string::npos);
     EXPECT_EQ(refusal("f 1 2 5 4\nf 2 3 6 5\n"), "");
+}
+
+// The reader has refused such a file before; a mesh of a program's own making comes here first.
+TEST(Topology, RefusesAFaceThatNamesAVertexTwice)
+{
+    auto const refusal = [](std::vector<std::vector<std::uint32_t>> const& faces) -> std::string {
+        ControlMesh mesh;
+        for (int i = 0; i < 9; ++i) mesh.positions.emplace_back(i % 3, i / 3, 0);
+        for (auto const& face : faces) mesh.add_face(face);
+        try {
+            Topology const t(mesh);
+        } catch (MeshError const& e) {
+            return e.what();
+        }
+        return "";
+    };
+    EXPECT_EQ(refusal({{0, 1, 4}}), "");
+    EXPECT_NE(refusal({{0, 1, 1, 4}}).find("face 1 names vertex 2 twice"), std::string::npos);
+    // A face around another one, slit along edge 1-5, with faces of others between its corners.
+    EXPECT_NE(refusal({{0, 1, 2, 3, 0, 4, 7, 6, 5, 4}, {4, 5, 6, 7}, {0, 3, 8}, {1, 0, 8}})
+                  .find("face 1 names vertex 1 twice"),
+              std::string::npos);
 }
 
 // Sheet math_subdivision 1.1: quads only after a step; the counts F' = sum of sides, V' = F + E +

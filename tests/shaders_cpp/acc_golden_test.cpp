@@ -1,6 +1,7 @@
 // ACC's control points and tangent fields against golden data, through the templates that draw.
 //
 // SPDX-License-Identifier: Apache-2.0
+#include "pipeline/schemes/acc/stencils.h"
 #include "shaders_cpp/acc/acc_hull_shader.h"
 #include "tests/support/files.h"
 #include "tests/support/stencil_patch.h"

@@ -3,13 +3,13 @@
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/tally.h"
-#include "io/obj_reader.h"
-#include "pipeline/builtin_models.h"
+#include "io/model.h"
 #include "pipeline/frame.h"
-#include "pipeline/patch_stencils.h"
+#include "pipeline/schemes/gregory/stencils.h"
+#include "pipeline/schemes/scheme.h"
 #include "shaders_cpp/acc/acc_quad.h"
 #include "shaders_cpp/gregory/domain_shaders.h"
-#include "shaders_cpp/stencil_hull_shader.h"
+#include "shaders_cpp/stencil_form/stencil_hull_shader.h"
 #include "tests/support/machines.h"
 
 #include <gtest/gtest.h>
@@ -39,8 +39,9 @@ template <class Inside> constexpr Cost evaluation_cost()
     return c;
 }
 
-// LOOP10: 162 for the bicubic; sheet section 8: 198 for Gregory with all scalar work (LOOP10's 174
-// leaves out the 24 multiplications that apply the blend weights); 258 for the triangle.
+// LOOP10: 162 for the bicubic; docs/math/loop09.md, 8: 198 for Gregory with all scalar work
+// (LOOP10's 174 leaves out the 24 multiplications that apply the blend weights); 258 for the
+// triangle.
 static_assert(flops_loop10(evaluation_cost<RegularQuadInside>().flops) == 162);
 static_assert(flops_loop10(evaluation_cost<GregoryQuadInside>().flops) == 198);
 static_assert(flops_loop10(evaluation_cost<GregoryTriangleInside>().flops) == 258);
@@ -65,13 +66,6 @@ template <class Shader> constexpr Cost domain_cost(double u, double v)
         (void)ProjectionEpilog{}(in, Shader{}(in, patch, registers));
     });
     return c;
-}
-
-TEST(EvaluationCost, ReadsTwentyFifteenAndSixteenControlPoints)
-{
-    EXPECT_EQ(evaluation_cost<GregoryQuadInside>().control_points, 20u);
-    EXPECT_EQ(evaluation_cost<GregoryTriangleInside>().control_points, 15u);
-    EXPECT_EQ(evaluation_cost<RegularQuadInside>().control_points, 16u);
 }
 
 // A stencil row costs 3 per input; with one extraordinary vertex there are 2n + 8 inputs: 6n + 24
@@ -100,19 +94,6 @@ TEST(StencilRow, CostsThreeMultiplicationsPerInput)
     }
 }
 
-struct Built {
-    ControlMesh mesh;
-    std::unique_ptr<Topology> topology;
-    std::unique_ptr<PatchMesh> patches;
-    explicit Built(std::string const& name, char const* scheme = "gregory-stencil")
-    {
-        for (BuiltinModel const& m : builtin_models())
-            if (m.name == name) mesh = read_obj(m.obj, name).mesh;
-        topology = std::make_unique<Topology>(mesh);
-        patches = find_technique(scheme).build(*topology, {});
-    }
-};
-
 StageStatistics const& stage(DrawStatistics const& s, std::string const& name)
 {
     for (StageStatistics const& x : s.stages)
@@ -134,21 +115,22 @@ TEST(DomainShader, RunTimeCountsEqualTheTallySummedOverInvocations)
     for (auto [name, scheme] : {std::pair{"jug", "gregory-stencil"},
                                 {"spindle", "gregory-stencil"},
                                 {"saddle_star", "acc"}}) {
-        Built const built(name, scheme);
+        SchemeOnMesh const on = build_scheme(find_scheme(scheme), load_model(name).mesh);
         for (Machine const& machine : test::machines()) {
-            PassSettings settings;
+            SurfaceSettings settings;
             settings.tess_factor = 5.3f;
             settings.machine = machine;
-            for (DrawPass const& pass : built.patches->passes(settings)) {
+            CommandList const list = on.patches->commands(settings);
+            list.for_each_surface_draw([&](Draw const& d) {
+                std::string const& kind = d.kind.name;
                 Cost expected;
                 auto const visit = [&](ShadedPatch const& p) {
                     for (std::size_t i = 0; i < p.points->patch.points(); ++i) {
                         double const u = double(p.points->u[i]), v = double(p.points->v[i]);
-                        Cost const c = pass.kind.name == "regular quad"
+                        Cost const c = kind == "regular quad"
                                            ? domain_cost<RegularQuadDomainShader>(u, v)
-                                       : pass.kind.name == "ACC quad"
-                                           ? domain_cost<AccQuadDomainShader>(u, v)
-                                       : pass.kind.name == "Gregory quad"
+                                       : kind == "ACC quad" ? domain_cost<AccQuadDomainShader>(u, v)
+                                       : kind == "Gregory quad"
                                            ? domain_cost<GregoryQuadDomainShader>(u, v)
                                            : domain_cost<GregoryTriangleDomainShader>(u, v);
                         expected.flops += c.flops;
@@ -157,14 +139,14 @@ TEST(DomainShader, RunTimeCountsEqualTheTallySummedOverInvocations)
                     }
                 };
                 DrawStatistics const s =
-                    draw(pass.pipeline, pass.call, nullptr, visit, ThreadPool(2));
+                    draw(GraphicsPipeline(d.pipeline), d.call, nullptr, visit, ThreadPool(2));
                 StageStatistics const& ds = stage(s, "domain_shader");
-                EXPECT_EQ(ds.flops, expected.flops) << pass.kind.name << testing::PrintToString(machine);
-                EXPECT_EQ(fetched(ds, "control_points"), expected.control_points) << pass.kind.name;
-                EXPECT_EQ(fetched(ds, "patch_constants"), expected.patch_constants)
-                    << pass.kind.name;
-                kinds.insert(pass.kind.name);
-            }
+                std::string const what = kind + ", " + testing::PrintToString(machine);
+                EXPECT_EQ(ds.flops, expected.flops) << what;
+                EXPECT_EQ(fetched(ds, "control_points"), expected.control_points) << what;
+                EXPECT_EQ(fetched(ds, "patch_constants"), expected.patch_constants) << what;
+                kinds.insert(kind);
+            });
         }
     }
     EXPECT_EQ(kinds.size(), 4u) << "a patch kind was not drawn";
@@ -174,12 +156,13 @@ TEST(DomainShader, RunTimeCountsEqualTheTallySummedOverInvocations)
 TEST(HullShader, RunTimeCountsEqualThreePerNonZeroWeight)
 {
     for (char const* name : {"jug", "spindle"}) {
-        Built const built(name);
+        SchemeOnMesh const on = build_scheme(find_scheme("gregory-stencil"), load_model(name).mesh);
+        Topology const& topology = on.mesh->topology();
         std::uint64_t expected = 0;
         Neighbourhood n;
-        for (std::uint32_t f = 0; f < built.mesh.faces(); ++f) {
-            find_neighbourhood(*built.topology, f, n);
-            PatchStencils const s = make_gregory_stencils(n, is_regular(*built.topology, f), {});
+        for (std::uint32_t f = 0; f < on.mesh->mesh().faces(); ++f) {
+            find_neighbourhood(topology, f, n);
+            PatchStencils const s = make_gregory_stencils(n, is_regular(topology, f), {});
             // Rows that run: control points, 4 an edge, one pair of tangents a corner.
             std::vector<std::size_t> rows(std::size_t(s.control_points + 4 * n.sides));
             std::iota(rows.begin(), rows.end(), std::size_t(0));
@@ -192,10 +175,10 @@ TEST(HullShader, RunTimeCountsEqualThreePerNonZeroWeight)
         for (Machine const& machine : test::machines()) {
             FrameSettings settings;
             settings.machine = machine;
-            DrawStatistics const s = visit_surface(*built.patches, settings, ThreadPool(2),
-                                                   [](auto const&, auto const&) {});
-            EXPECT_EQ(stage(s, "hull_shader").flops.mul, expected) << name << testing::PrintToString(machine);
-            EXPECT_EQ(stage(s, "hull_shader").flops.add, expected) << name;
+            DrawStatistics const s = visit_surface(*on.patches, settings, ThreadPool(2), {}).total;
+            std::string const what = name + (", " + testing::PrintToString(machine));
+            EXPECT_EQ(stage(s, "hull_shader").flops.mul, expected) << what;
+            EXPECT_EQ(stage(s, "hull_shader").flops.add, expected) << what;
         }
     }
 }

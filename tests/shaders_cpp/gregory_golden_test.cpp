@@ -1,6 +1,7 @@
 // Control points and evaluation against golden data, through the templates that draw.
 //
 // SPDX-License-Identifier: Apache-2.0
+#include "pipeline/schemes/gregory/stencils.h"
 #include "shaders_cpp/gregory/domain_shaders.h"
 #include "tests/support/files.h"
 #include "tests/support/stencil_patch.h"
@@ -188,7 +189,7 @@ TEST(GregoryStencils, AgreeWithGoldenStencilsAndSumToOne)
     }
 }
 
-// Regular faces are the uniform bicubic B-spline: M P M^T (sheet section 7).
+// Regular faces are the uniform bicubic B-spline: M P M^T (docs/math/loop09.md, 7).
 TEST(GregoryStencils, RegularFaceIsTheBSpline)
 {
     Json const j = Json::parse(test::read_text(test::golden("loop09/torus_regular.json")));

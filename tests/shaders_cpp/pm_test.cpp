@@ -4,7 +4,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/tally.h"
 #include "pipeline/frame.h"
-#include "pipeline/pm_technique.h"
+#include "pipeline/schemes/pm/constants.h"
+#include "pipeline/schemes/scheme.h"
 #include "shaders_cpp/pm/pm_patch.h"
 #include "shaders_cpp/pm/pm_vertex_shader.h"
 #include "tests/support/files.h"
@@ -32,7 +33,7 @@ template <class F, int m> struct Patch {
         std::vector<F> const input = vertices.of_face(topology.mesh(), f);
         ControlPoints<RingVertex<F>> const in(input.data(), m);
         for (int i = 0; i < m; ++i) {
-            SectorOf<5, F> const s = hs.template control_point<F>({0}, in, i);
+            CornerVectors<5, F> const s = hs.template control_point<F>({0}, in, i);
             for_each_scalar(s, [&](F x) { sectors.push_back(x); });
         }
         for (int i = 0; i < hs.patch_constants(); ++i) {
@@ -40,7 +41,7 @@ template <class F, int m> struct Patch {
             for_each_scalar(r, [&](F x) { registers.push_back(x); });
         }
     }
-    ControlPoints<SectorOf<5, F>> sector_view() const { return {sectors.data(), m}; }
+    ControlPoints<CornerVectors<5, F>> sector_view() const { return {sectors.data(), m}; }
     ControlPoints<EdgeRegister<F>> register_view() const
     {
         return {registers.data(), PmRegisters<m>::kCount};
@@ -187,12 +188,12 @@ TEST(Pm, DomainMapIsABijection)
         }
 }
 
-// Sheet section 8: 232 with the map and the cross product; 25 and 19 coefficients.
+// docs/math/loop09.md, 8: 232 with the map and the cross product; 25 and 19 coefficients.
 template <int m> constexpr std::array<std::uint64_t, 2> cost()
 {
     std::uint64_t reads = 0;
     FlopCount const flops = tally([&](FlopCount* sink) {
-        ControlPoints<SectorOf<5, Tally>> const sectors(sink, m, &reads);
+        ControlPoints<CornerVectors<5, Tally>> const sectors(sink, m, &reads);
         ControlPoints<EdgeRegister<Tally>> const registers(sink, PmRegisters<m>::kCount, &reads);
         DomainInput<Tally> const in{Tally(0.25, sink), Tally(0.5, sink), Tally(0.25, sink), 0};
         TangentFrame<Tally> const s = PmInside<m>::template evaluate<Tally>(sectors, registers, in);
@@ -201,7 +202,7 @@ template <int m> constexpr std::array<std::uint64_t, 2> cost()
     return {flops_loop10(flops), reads};
 }
 
-TEST(Pm, CostsAreThoseOfTheSheet)
+TEST(Pm, CostsAreThoseOfThePage)
 {
     EXPECT_EQ(cost<4>(), (std::array<std::uint64_t, 2>{232, 25}));
     EXPECT_EQ(cost<3>(), (std::array<std::uint64_t, 2>{232, 19}));
@@ -215,11 +216,10 @@ TEST(Pm, VertexShaderCostsWhatItsDocumentationSays)
         Json const j =
             Json::parse(test::read_text(test::golden(std::string("loop09/") + name + ".json")));
         ControlMesh const mesh = test::mesh_from(j);
-        Topology const topology(mesh);
+        SchemeOnMesh const on = build_scheme(find_scheme("pm"), mesh);
         FrameSettings settings;
         settings.vertex_cache.kind = VertexCacheModel::Kind::Infinite;
-        DrawStatistics const s =
-            visit_surface(*make_pm_technique()->build(topology, {}), settings, ThreadPool(1), {});
+        DrawStatistics const s = visit_surface(*on.patches, settings, ThreadPool(1), {}).total;
         for (StageStatistics const& stage : s.stages)
             if (stage.stage == "vertex_shader") {
                 EXPECT_EQ(flops_loop10(stage.flops), std::uint64_t(mul)) << name;
@@ -232,8 +232,7 @@ TEST(Pm, RefusesABoundary)
     ControlMesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     mesh.add_face(std::vector<std::uint32_t>{0, 1, 2, 3});
-    Topology const topology(mesh);
-    EXPECT_THROW(make_pm_technique()->build(topology, {}), MeshError);
+    EXPECT_THROW(build_scheme(find_scheme("pm"), mesh), MeshError);
 }
 
 } // namespace

@@ -2,10 +2,11 @@
 // costs; what its limits are.
 //
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/catmull_clark.h"
 #include "pipeline/frame.h"
+#include "pipeline/schemes/gregory/ring_constants.h"
+#include "pipeline/schemes/scheme.h"
+#include "shaders_cpp/gregory/corner_hull_shader.h"
 #include "shaders_cpp/gregory/ring_vertex_shader.h"
-#include "shaders_cpp/gregory/sector_hull_shader.h"
 #include "tests/support/files.h"
 #include "tests/support/ring_vertices.h"
 #include "tests/support/stencil_patch.h"
@@ -28,7 +29,7 @@ void check_face(Topology const& topology, Vertices<F> const& vertices, Json cons
     ControlMesh const& mesh = topology.mesh();
     std::vector<F> const input = vertices.of_face(mesh, f);
     test::FaceTables<F> const tables(topology, f);
-    auto const hs = tables.template bind<SectorHullShader<kDomain, 5, F>>();
+    auto const hs = tables.template bind<CornerHullShader<kDomain, 5, F>>();
     ControlPoints<RingVertex<F>> const in(input.data(), N);
     // Bounds. double: 1e-12, as the golden data were compared. float, u = 2^-24, L the largest
     // coordinate: m_j and c_j err by 5 u L. The weights of A and B sum to at most 2 + 4 sigma < 4
@@ -42,7 +43,7 @@ void check_face(Topology const& topology, Vertices<F> const& vertices, Json cons
     double const bound = sizeof(F) == 8 ? 1e-12 : e_bound * (1 + 2 + 2.0 / 3) + 20 * unit;
     char const* const kinds[] = {"p", "e_plus", "e_minus", "f_plus", "f_minus"};
     for (int i = 0; i < N; ++i) {
-        SectorOf<5, F> const s = hs.template control_point<F>({0}, in, i);
+        CornerVectors<5, F> const s = hs.template control_point<F>({0}, in, i);
         for (std::size_t k = 0; k < 5; ++k)
             ASSERT_LE(test::error(s.vectors[k], expected[kinds[k]][std::size_t(i)]), bound)
                 << mesh_name << " face " << f << " " << kinds[k] << i;
@@ -107,18 +108,13 @@ StageStatistics const& stage(DrawStatistics const& s, std::string const& name)
 
 TEST(TwoStage, TakesValencesUpTo15WhichTheStencilFormRefuses)
 {
-    Technique const& two_stage = find_technique("gregory-two-stage");
-    ControlMesh const coarse = bipyramid(15);
-    Topology const coarse_topology(coarse);
+    Scheme const& two_stage = find_scheme("gregory-two-stage");
     // After a Catmull-Clark step quads of valences 15, 4, 3, 4 have 36 inputs.
-    ControlMesh const fine = catmull_clark_step(coarse_topology);
-    Topology const topology(fine);
-    EXPECT_EQ(two_stage.build(topology, {})->patch_counts()[0].patches, 90u);
-    EXPECT_THROW(find_technique("gregory-stencil").build(topology, {}), LimitError);
-    ControlMesh const wide = bipyramid(16);
-    Topology const wide_topology(wide);
+    BuildOptions const fine{.subdivide = 1};
+    EXPECT_EQ(build_scheme(two_stage, bipyramid(15), fine).patches->patch_counts()[0].patches, 90u);
+    EXPECT_THROW(build_scheme(find_scheme("gregory-stencil"), bipyramid(15), fine), LimitError);
     try {
-        two_stage.build(wide_topology, {});
+        build_scheme(two_stage, bipyramid(16));
         FAIL();
     } catch (LimitError const& e) {
         EXPECT_NE(std::string(e.what()).find("edges at vertex 1"), std::string::npos) << e.what();
@@ -126,18 +122,16 @@ TEST(TwoStage, TakesValencesUpTo15WhichTheStencilFormRefuses)
     }
 }
 
-// Sheet section 8: 30n + 6 a vertex with A and B, and 6 for the normal's cross product; 72 a
+// docs/math/loop09.md, 8: 30n + 6 a vertex with A and B, and 6 for the normal's cross product; 72 a
 // triangle patch and 3 for each of the two field vectors across an edge. All vertices of a
 // bipyramid are interior, two of valence n and n of valence 4.
-TEST(TwoStage, CostsAreThoseOfTheSheet)
+TEST(TwoStage, CostsAreThoseOfThePage)
 {
     for (int n : {5, 9, 15}) {
-        ControlMesh const mesh = bipyramid(n);
-        Topology const topology(mesh);
-        auto const patches = find_technique("gregory-two-stage").build(topology, {});
+        SchemeOnMesh const on = build_scheme(find_scheme("gregory-two-stage"), bipyramid(n));
         FrameSettings settings;
         settings.vertex_cache = {VertexCacheModel::Kind::Infinite, 0};
-        DrawStatistics const s = visit_surface(*patches, settings, ThreadPool(1), {});
+        DrawStatistics const s = visit_surface(*on.patches, settings, ThreadPool(1), {}).total;
         auto const N = std::uint64_t(n);
         StageStatistics const& vs = stage(s, "vertex_shader");
         EXPECT_EQ(vs.invocations, N + 2); // each vertex once
@@ -155,13 +149,11 @@ TEST(TwoStage, CostsAreThoseOfTheSheet)
 
 TEST(TwoStage, TheVertexCacheDecidesHowOftenTheVertexShaderRuns)
 {
-    ControlMesh const mesh = bipyramid(15);
-    Topology const topology(mesh);
-    auto const patches = find_technique("gregory-two-stage").build(topology, {});
+    SchemeOnMesh const on = build_scheme(find_scheme("gregory-two-stage"), bipyramid(15));
     auto const runs = [&](VertexCacheModel cache) {
         FrameSettings settings;
         settings.vertex_cache = cache;
-        return visit_surface(*patches, settings, ThreadPool(1), {}).pipeline.VSInvocations;
+        return visit_surface(*on.patches, settings, ThreadPool(1), {}).total.pipeline.VSInvocations;
     };
     EXPECT_EQ(runs({VertexCacheModel::Kind::Infinite, 0}), 17u);
     EXPECT_EQ(runs({VertexCacheModel::Kind::None, 0}), 90u);

@@ -1,32 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/edges.h"
 
-#include <fmt/format.h>
+#include "shaders_cpp/domain_edges.h"
 
 #include <algorithm>
-#include <cstring>
+#include <bit>
 #include <map>
 #include <unordered_map>
 
 namespace tessemu::test {
 
 namespace {
-struct Place {
-    std::uint32_t a, b,
-        t; // edge a < b with the parameter from a in 1/65536, or corner a with b = a
-    friend bool operator==(Place const&, Place const&) = default;
-};
-struct PlaceHash {
-    std::size_t operator()(Place const& p) const
+
+using Bits = std::array<std::uint32_t, 6>;
+
+Bits bits_of(SurfaceVertex const& v)
+{
+    Bits out;
+    for (int c = 0; c < 3; ++c) {
+        out[std::size_t(c)] = std::bit_cast<std::uint32_t>(v.position[c]);
+        out[std::size_t(3 + c)] = std::bit_cast<std::uint32_t>(v.normal[c]);
+    }
+    return out;
+}
+
+struct MeshPointHash {
+    std::size_t operator()(MeshPoint const& p) const
     {
-        return ((std::size_t(p.a) * 0x9e3779b97f4a7c15u) ^ (std::size_t(p.b) << 20) ^ p.t) *
-               0xbf58476d1ce4e5b9u;
+        std::size_t h = std::size_t(p.kind);
+        for (std::uint32_t word : {p.a, p.b, p.s, p.t})
+            h = (h ^ word ^ h >> 29) * 0x9e3779b97f4a7c15u;
+        return h ^ h >> 32;
     }
 };
+
 struct Seen {
-    std::array<std::uint32_t, 6> bits;
-    bool shared = false;
-    bool outline = false; // of a patch's triangles
+    Bits bits;
+    std::size_t patch;             // that had it last
+    int patches = 1;               // that have it
+    int outlines = 0;              // on whose triangles' outline it lies
+    std::size_t outline_patch = 0; // the last of them
+    MeshLine line{};               // unless it is a corner of a patch
+    std::uint32_t at = 0;          // on the line
 };
 
 // Points on the outline of a patch's triangles. With fractional_odd spacing and an inside factor of
@@ -42,91 +57,107 @@ std::vector<char> outline_of(TessellatedPatch const& t)
         if (n == 1) out[edge.first] = out[edge.second] = 1;
     return out;
 }
+
+class Comparison {
+public:
+    explicit Comparison(ControlMesh const& mesh) : mesh_(mesh) {}
+
+    void add(SurfacePatch const& patch)
+    {
+        std::size_t const number = ++patches_;
+        PatchPlace const& place = patch.place();
+        int const n = place.sides;
+        MeshInterval edge[4];
+        for (int k = 0; k < n; ++k) {
+            edge[k] = mesh_interval(mesh_, place, k);
+            intervals_[edge[k].line].push_back(std::minmax(edge[k].from, edge[k].to));
+        }
+        TessellatedPatch const& tess = patch.domain().patch;
+        std::vector<char>& outline = outlines_[tess.indices];
+        if (outline.empty()) outline = outline_of(tess);
+        for (std::size_t i = 0; i < tess.points(); ++i) {
+            float const u = patch.domain().u[i], v = patch.domain().v[i];
+            DomainEdges<4, float> const at = domain_edges<float>(n, u, v, 1 - u - v, 1 - u, 1 - v);
+            auto const edges = std::count(at.on, at.on + n, true);
+            if (edges == 0) continue;
+            bool const corner = edges > 1;
+            MeshPoint const point = mesh_point(mesh_, place, tess.u[i], tess.v[i]);
+            Bits const bits = bits_of(patch.vertex(i));
+            auto const [it, fresh] = seen_.try_emplace(point, Seen{bits, number});
+            Seen& seen = it->second;
+            for (int k = 0; k < n && !corner; ++k) // a parameter is a multiple of 2^-16
+                if (at.on[k])
+                    seen.line = edge[k].line, seen.at = edge[k].at(std::uint32_t(at.t[k] * 65536));
+            if (outline[i] && seen.outline_patch != number)
+                ++seen.outlines, seen.outline_patch = number;
+            if (seen.patch == number) continue;
+            seen.patch = number;
+            ++seen.patches;
+            compare(point, seen.bits, bits, corner);
+        }
+    }
+
+    EdgeComparison result()
+    {
+        for (auto const& [point, seen] : seen_) {
+            out_.shared_points += seen.patches > 1;
+            if (seen.outlines != 1) continue;
+            std::size_t inside = 0;
+            for (auto const& [low, high] : intervals_[seen.line])
+                inside += low < seen.at && seen.at < high;
+            out_.lonely_points += inside == 2;
+        }
+        return std::move(out_);
+    }
+
+private:
+    void compare(MeshPoint const& point, Bits const& first, Bits const& bits, bool corner)
+    {
+        bool position = false, normal = false;
+        for (std::size_t c = 0; c < 6; ++c) {
+            bool const differs = bits[c] != first[c];
+            (c < 3 ? position : normal) |= differs;
+            if (corner || c >= 3) continue;
+            ++out_.shared_edge_coordinates;
+            out_.differing_edge_coordinates += differs;
+        }
+        out_.differing_positions += position;
+        out_.differing_normals += normal;
+        if ((position || normal) && out_.first_difference.empty())
+            out_.first_difference = in_words(point) + (position ? ", position" : ", normal");
+    }
+
+    ControlMesh const& mesh_;
+    std::size_t patches_ = 0;
+    std::unordered_map<MeshPoint, Seen, MeshPointHash> seen_;
+    std::map<MeshLine, std::vector<std::pair<std::uint32_t, std::uint32_t>>> intervals_;
+    std::map<std::vector<std::uint32_t>, std::vector<char>> outlines_; // by pattern
+    EdgeComparison out_;
+};
+
 } // namespace
 
-EdgeComparison compare_edges(ControlMesh const& mesh, PatchMesh const& patches,
-                             FrameSettings const& s, ThreadPool const& threads,
-                             ReplaceDomainShader const& replace)
+EdgeComparison compare_edges(PatchMesh const& patches, FrameSettings const& s,
+                             ThreadPool const& threads, ReplaceDomainShader const& replace)
 {
-    EdgeComparison out;
-    std::unordered_map<Place, Seen, PlaceHash> seen;
-    for (DrawPass& pass : frame_passes(patches, s, pass_settings(s))) {
-        GraphicsPipelineDesc desc = pass.pipeline.desc();
-        if (replace)
-            if (auto const other = replace(pass)) desc.domain_shader = other;
-        std::map<std::vector<std::uint32_t>, std::vector<char>> outlines; // by pattern
-        auto const visit = [&](ShadedPatch const& patch) {
-            PatchOrigin const& origin = pass.patches[patch.primitive_id];
-            auto const face = mesh.face(origin.face);
-            int const n = origin.sides;
-            auto const vertex = [&](int i) { return face[std::size_t((i + origin.rotation) % n)]; };
-            auto const& tess = patch.points->patch;
-            std::vector<char>& outline = outlines[tess.indices];
-            if (outline.empty()) outline = outline_of(tess);
-            for (std::size_t i = 0; i < tess.points(); ++i) {
-                std::uint32_t const u = tess.u[i], v = tess.v[i], one = kFixedOne;
-                std::uint32_t const w = one - u - v;
-                bool on[4];
-                std::uint32_t t[4];
-                if (n == 4) {
-                    on[0] = v == 0, on[1] = u == one, on[2] = v == one, on[3] = u == 0;
-                    t[0] = u, t[1] = v, t[2] = one - u, t[3] = one - v;
-                } else {
-                    on[0] = w == 0, on[1] = u == 0, on[2] = v == 0;
-                    t[0] = v, t[1] = w, t[2] = u;
-                }
-                for (int k = 0; k < n; ++k) {
-                    if (!on[k]) continue;
-                    std::uint32_t a = vertex(k), b = vertex(k + 1), parameter = t[k];
-                    bool const corner = parameter == 0 || parameter == one;
-                    if (corner) {
-                        a = b = parameter == 0 ? a : b;
-                        parameter = 0;
-                    } else if (a > b) {
-                        std::swap(a, b);
-                        parameter = one - parameter;
-                    }
-                    std::array<std::uint32_t, 6> bits;
-                    constexpr std::size_t component[6] = {0, 1, 2, 4, 5, 6};
-                    for (std::size_t c = 0; c < 6; ++c)
-                        std::memcpy(&bits[c], &patch.outputs[component[c] * patch.stride + i], 4);
-                    auto const [it, fresh] = seen.try_emplace({a, b, parameter}, Seen{bits});
-                    Seen& other = it->second;
-                    other.outline |= outline[i] != 0;
-                    if (fresh) continue;
-                    if (!other.shared) ++out.shared_points;
-                    other.shared = true;
-                    bool position = false, normal = false;
-                    for (std::size_t c = 0; c < 6; ++c) {
-                        bool const differs = bits[c] != other.bits[c];
-                        (c < 3 ? position : normal) |= differs;
-                        if (!corner && c < 3) {
-                            ++out.shared_edge_coordinates;
-                            out.differing_edge_coordinates += differs;
-                        }
-                    }
-                    out.differing_positions += position;
-                    out.differing_normals += normal;
-                    if ((position || normal) && out.first_difference.empty())
-                        out.first_difference =
-                            fmt::format("edge {}-{}, t = {}/65536, {}", a + 1, b + 1, parameter,
-                                        position ? "position" : "normal");
-                }
-            }
-        };
-        pass.pipeline = GraphicsPipeline(std::move(desc));
-        draw_pass(pass, nullptr, visit, threads);
-    }
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> patches_at;
-    for (std::size_t f = 0; f < mesh.faces(); ++f) {
-        auto const face = mesh.face(f);
-        for (std::size_t i = 0; i < face.size(); ++i)
-            ++patches_at[std::minmax(face[i], face[(i + 1) % face.size()])];
-    }
-    for (auto const& [place, point] : seen)
-        if (place.a != place.b && point.outline && !point.shared &&
-            patches_at[{place.a, place.b}] == 2)
-            ++out.lonely_points;
+    CommandList list = frame_commands(patches, s, surface_settings(s));
+    list.for_each_surface_draw([&](Draw& d) {
+        if (DomainShader other = replace ? replace(d) : nullptr)
+            d.pipeline.domain_shader = std::move(other);
+    });
+    Comparison out(patches.mesh().base());
+    CommandOptions options;
+    options.visit = [&](SurfacePatch const& patch) { out.add(patch); };
+    run_commands(list, threads, options);
+    return out.result();
+}
+
+std::vector<Machine> contraction_policies(std::uint64_t seeds)
+{
+    std::vector<Machine> out(2);
+    out[1].contraction = Contraction::All;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed)
+        out.push_back({kNativeLanes, Contraction::Mixed, seed});
     return out;
 }
 

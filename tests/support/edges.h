@@ -1,4 +1,4 @@
-// What both patches at a shared edge computed, side by side.
+// What the patches at a shared edge computed, side by side.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -10,17 +10,20 @@ namespace tessemu::test {
 struct EdgeComparison {
     std::size_t shared_points = 0; ///< edge points (corners included) seen by two patches or more
     std::size_t shared_edge_coordinates = 0, differing_edge_coordinates = 0; ///< without corners
-    std::size_t lonely_points = 0; ///< on an edge of two patches, of which one alone has the point
+    std::size_t lonely_points = 0; ///< inside the edges of two patches, of which one alone has it
     std::size_t differing_positions = 0, differing_normals = 0; ///< points with any other bit
     std::string first_difference;
 };
 
-/// Replaces a pass's domain shader; returns the program to use, or nothing to keep it.
-using ReplaceDomainShader = std::function<std::shared_ptr<DomainProgram const>(DrawPass const&)>;
+/// Replaces the domain shader of a draw of the surface; returns none to keep it.
+using ReplaceDomainShader = std::function<DomainShader(Draw const&)>;
 
-/// Draws the patches and compares positions and normals at equal edge parameters, bit for bit.
-EdgeComparison compare_edges(ControlMesh const& mesh, PatchMesh const& patches,
-                             FrameSettings const& settings, ThreadPool const& threads,
-                             ReplaceDomainShader const& replace = {});
+/// Runs the patches and compares positions and normals at equal points of the file's mesh, bit for
+/// bit.
+EdgeComparison compare_edges(PatchMesh const& patches, FrameSettings const& settings,
+                             ThreadPool const& threads, ReplaceDomainShader const& replace = {});
+
+/// Machines of every contraction: none, all, mixed with the seeds 1 to `seeds`.
+std::vector<Machine> contraction_policies(std::uint64_t seeds = 10);
 
 } // namespace tessemu::test

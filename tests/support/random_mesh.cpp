@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/random_mesh.h"
 
-#include "pipeline/topology.h"
+#include "pipeline/mesh/topology.h"
 
 #include <algorithm>
 #include <array>
@@ -120,6 +120,58 @@ ControlMesh random_mesh(std::uint32_t seed)
     for (glm::vec3& p : positions)
         for (int k = 0; k < 3; ++k) p[k] = scale * (p[k] + 0.6f * (unit() - 0.5f));
     return assemble(positions, faces);
+}
+
+ControlMesh join_faces(ControlMesh const& mesh, std::uint32_t seed)
+{
+    std::mt19937 random(seed * 2654435761u + 3);
+    std::vector<Face> faces;
+    for (std::size_t f = 0; f < mesh.faces(); ++f)
+        faces.emplace_back(mesh.face(f).begin(), mesh.face(f).end());
+    for (std::size_t k = 0; k < mesh.faces() / 3; ++k) {
+        std::vector<Face> const old = faces;
+        std::size_t const f = random() % faces.size(), i = random() % faces[f].size();
+        std::uint32_t const a = faces[f][i], b = faces[f][(i + 1) % faces[f].size()];
+        for (std::size_t g = 0; g < faces.size(); ++g) {
+            Face& other = faces[g];
+            auto const at = std::find(other.begin(), other.end(), b);
+            if (g == f || at == other.end()) continue;
+            std::rotate(other.begin(), at, other.end()); // b, a?, ...
+            if (other[1] != a) continue;
+            // Behind a the rest of the other face, which leads to b.
+            faces[f].insert(faces[f].begin() + std::ptrdiff_t(i) + 1, other.begin() + 2,
+                            other.end());
+            faces.erase(faces.begin() + std::ptrdiff_t(g));
+            break;
+        }
+        ControlMesh const joined = assemble(mesh.positions, faces);
+        if (joined.positions.size() < mesh.positions.size() || !is_manifold(joined, 12))
+            faces = old;
+    }
+    return assemble(mesh.positions, faces);
+}
+
+ControlMesh prism(int n)
+{
+    ControlMesh m;
+    auto const count = std::uint32_t(n);
+    for (float z : {0.0f, 1.0f})
+        for (int i = 0; i < n; ++i) {
+            double const angle = 2 * std::acos(-1.0) * i / n;
+            m.positions.emplace_back(std::cos(angle), std::sin(angle), z);
+        }
+    Face bottom, top;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        bottom.push_back(count - 1 - i);
+        top.push_back(count + i);
+    }
+    m.add_face(bottom);
+    m.add_face(top);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        std::uint32_t const next = (i + 1) % count;
+        m.add_face(Face{i, next, count + next, count + i});
+    }
+    return m;
 }
 
 } // namespace tessemu::test

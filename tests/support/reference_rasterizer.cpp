@@ -21,11 +21,10 @@ struct Band {
 };
 } // namespace
 
-ReferenceRasterizer::ReferenceRasterizer(RasterTarget const& state,
-                                         PixelProgram const& pixel_shader,
+ReferenceRasterizer::ReferenceRasterizer(RasterTarget const& state, PixelShader const& pixel_shader,
                                          std::array<float, 4> const& color)
     : state_(state),
-      pixel_shader_(&pixel_shader),
+      pixel_shader_(pixel_shader),
       viewport_(state.viewports.at(0)),
       color_(state.color[0]->width(), state.color[0]->height(), state.color[0]->format()),
       depth_(color_.width(), color_.height()),
@@ -234,7 +233,7 @@ void ReferenceRasterizer::shade(int x, int y, float z, float w,
     b.coverage = one;
     b.color = color;
     StageCounters counters;
-    pixel_shader_->run(b, counters, buffers_);
+    pixel_shader_.run(b, counters, buffers_);
     encode(color_.format(), {color[0][0], color[1][0], color[2][0], color[3][0]},
            color_.texel(x, y));
 }

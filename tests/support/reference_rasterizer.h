@@ -14,11 +14,11 @@ namespace tessemu::test {
 class ReferenceRasterizer {
 public:
     /// Draws into targets of its own, cleared to `color` and depth 1.
-    ReferenceRasterizer(RasterTarget const& state, PixelProgram const& pixel_shader,
+    ReferenceRasterizer(RasterTarget const& state, PixelShader const& pixel_shader,
                         std::array<float, 4> const& color);
 
     /// Shades with another shader from now on.
-    void use(PixelProgram const& pixel_shader) { pixel_shader_ = &pixel_shader; }
+    void use(PixelShader const& pixel_shader) { pixel_shader_ = pixel_shader; }
     /// A triangle of clip-space vertices: position, then attributes.
     void triangle(std::array<std::vector<float>, 3> const& vertices, std::int32_t primitive_id);
 
@@ -39,7 +39,7 @@ private:
                std::int32_t primitive_id, bool front);
 
     RasterTarget const& state_;
-    PixelProgram const* pixel_shader_;
+    PixelShader pixel_shader_;
     Viewport viewport_;
     Rect bounds_;
     ColorTarget color_;

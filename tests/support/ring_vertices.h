@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pipeline/vertex_rings.h"
+#include "pipeline/forms/vertex_rings.h"
 
 #include <nlohmann/json.hpp>
 

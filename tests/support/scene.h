@@ -64,8 +64,8 @@ struct Scene {
         target.depth = &depth;
         target.viewports = {{0, 0, float(w), float(h), 0, 1}};
         target.rasterizer.cull = CullMode::None;
-        desc.vertex_shader = make_vertex_program(SceneVertexShader{}, {});
-        desc.pixel_shader = make_pixel_program(ShowValue{}, {});
+        desc.vertex_shader = bind_vertex_shader(SceneVertexShader{}, {});
+        desc.pixel_shader = bind_pixel_shader(ShowValue{}, {});
         call.topology = PrimitiveTopology::TriangleList;
         clear();
     }
@@ -102,7 +102,7 @@ struct Scene {
     }
     template <class Shader> void use(Shader const& shader)
     {
-        desc.pixel_shader = make_pixel_program(shader, {});
+        desc.pixel_shader = bind_pixel_shader(shader, {});
     }
     float at(int x, int y, std::size_t k = 0, int s = 0) const { return color.load(x, y, s)[k]; }
     /// Samples whose first component is not 0.

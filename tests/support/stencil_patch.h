@@ -3,8 +3,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pipeline/patch_stencils.h"
-#include "shaders_cpp/stencil_hull_shader.h"
+#include "pipeline/forms/patch_stencils.h"
+#include "shaders_cpp/stencil_form/stencil_hull_shader.h"
 
 #include <nlohmann/json.hpp>
 

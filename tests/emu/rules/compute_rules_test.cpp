@@ -36,8 +36,8 @@ TEST(ComputeShader, R152R164ThreadIdsAndInvocationCounts)
             std::vector<std::int32_t> out(2 * 60 * 4, -1);
             Ids shader;
             shader.out = {out, 0, "out"};
-            auto const program = make_compute_program(shader, machine);
-            DrawStatistics const n = dispatch(*program, {2, 1, 1}, ThreadPool(threads));
+            auto const program = bind_compute_shader(shader, machine);
+            DrawStatistics const n = dispatch(program, {2, 1, 1}, ThreadPool(threads));
             EXPECT_EQ(n.pipeline.CSInvocations, 120u);
             EXPECT_EQ(n.stages[0].output_bytes, 120u * 4 * 4);
             for (int g = 0; g < 2; ++g)
@@ -56,11 +56,11 @@ TEST(ComputeShader, R151LimitsAreNamedAndAnEmptyDispatchDoesNothing)
     std::vector<std::int32_t> out(480, -1);
     Ids shader;
     shader.out = {out, 0, "out"};
-    auto const program = make_compute_program(shader, {});
-    EXPECT_EQ(dispatch(*program, {2, 0, 1}, ThreadPool(1)).pipeline.CSInvocations, 0u);
+    auto const program = bind_compute_shader(shader, {});
+    EXPECT_EQ(dispatch(program, {2, 0, 1}, ThreadPool(1)).pipeline.CSInvocations, 0u);
     EXPECT_EQ(out[0], -1);
     try {
-        dispatch(*program, {65536, 1, 1}, ThreadPool(1));
+        dispatch(program, {65536, 1, 1}, ThreadPool(1));
         FAIL();
     } catch (LimitError const& e) {
         EXPECT_EQ(e.value, 65536u);
@@ -77,7 +77,7 @@ template <int x, int y, int z, int shared> struct Sized {
 TEST(ComputeShader, R151R153GroupSizeAndSharedMemoryLimits)
 {
     auto const run = [](auto shader) {
-        dispatch(*make_compute_program(shader, {}), {1, 1, 1}, ThreadPool(1));
+        dispatch(bind_compute_shader(shader, {}), {1, 1, 1}, ThreadPool(1));
     };
     EXPECT_NO_THROW(run(Sized<1024, 1, 1, 8192>{}));
     EXPECT_NO_THROW(run(Sized<4, 4, 64, 0>{}));
@@ -133,8 +133,7 @@ TEST(ComputeShader, R153R154I27BarriersMakeSharedMemoryVisibleAndGroupsStartPois
         shader.out = {out, 1, "out"};
         shader.first_seen = {seen, 2, "seen"};
         DrawStatistics const n =
-            dispatch(*make_compute_program(shader, machine), {5, 1, 1},
-                     ThreadPool(3));
+            dispatch(bind_compute_shader(shader, machine), {5, 1, 1}, ThreadPool(3));
         for (int g = 0; g < 5; ++g) {
             EXPECT_EQ(out[std::size_t(g)], float(64 * (64 * g) + 64 * 65 / 2));
             EXPECT_TRUE(seen[std::size_t(g)] != seen[std::size_t(g)]); // not the last group's
@@ -174,8 +173,7 @@ TEST(ComputeShader, R144R154R155I24AtomicsRunInSerialOrderAndOutOfRangeStoresDoN
             Append shader;
             shader.counter = {counter, 0, "counter"};
             shader.list = {list, 1, "list"};
-            dispatch(*make_compute_program(shader, machine),
-                     {10, 1, 1}, ThreadPool(threads));
+            dispatch(bind_compute_shader(shader, machine), {10, 1, 1}, ThreadPool(threads));
             EXPECT_EQ(counter[0], 50u); // ten of them found no room
             for (std::uint32_t i = 0; i < 40; ++i) ASSERT_EQ(list[i], 2 * i);
         }
@@ -194,7 +192,7 @@ struct OutOfShared {
 TEST(ComputeShader, R155I26StoresPastSharedMemoryAreDroppedAndReported)
 {
     DrawStatistics const n =
-        dispatch(*make_compute_program(OutOfShared{}, {}), {3, 1, 1}, ThreadPool(2));
+        dispatch(bind_compute_shader(OutOfShared{}, {}), {3, 1, 1}, ThreadPool(2));
     EXPECT_EQ(n.shared_out_of_range, 3u * 4);
 }
 

@@ -44,7 +44,7 @@ struct ShowId {
 TEST(GeometryShader, R7R85R99LeadingVertexGivesPrimitiveIdAndViewport)
 {
     Scene s(32, 32);
-    s.desc.geometry_shader = make_geometry_program(PassTriangle{}, {});
+    s.desc.geometry_shader = bind_geometry_shader(PassTriangle{}, {});
     s.use(ShowId{});
     s.target.viewports = {{0, 0, 16, 16, 0, 1}, {16, 0, 16, 16, 0, 1}, {0, 16, 16, 16, 0, 1}};
     for (int i = 0; i < 5; ++i) s.add_full(0.5f - float(i) / 16);
@@ -64,7 +64,7 @@ TEST(GeometryShader, R99WithoutOneAllGoesToViewportZero)
     s.options.memory = &memory;
     s.target.viewports = {{0, 0, 16, 16, 0, 1}, {16, 0, 16, 16, 0, 1}};
     for (int i = 0; i < 2; ++i) s.add_full(0.5f);
-    s.desc.geometry_shader = make_geometry_program(PassTriangle{}, {});
+    s.desc.geometry_shader = bind_geometry_shader(PassTriangle{}, {});
     s.draw();
     EXPECT_EQ(s.covered(), 2 * 16 * 16);
     s.clear();
@@ -77,7 +77,7 @@ TEST(GeometryShader, R99WithoutOneAllGoesToViewportZero)
 TEST(GeometryShader, R99AnIndexOutOfRangeActsAsZero)
 {
     Scene s(16, 16);
-    s.desc.geometry_shader = make_geometry_program(PassTriangle{}, {});
+    s.desc.geometry_shader = bind_geometry_shader(PassTriangle{}, {});
     s.use(ShowId{});
     s.target.viewports = {{0, 0, 16, 16, 0, 1}};
     for (int i = 0; i < 17; ++i) s.add_full(0.9f - float(i) / 32);
@@ -118,7 +118,7 @@ Streamed stream_strips(std::vector<std::array<float, 2>> const& points, std::siz
     Scene s;
     s.threads = threads;
     s.call.topology = PrimitiveTopology::PointList;
-    s.desc.geometry_shader = make_geometry_program(Strips{}, machine);
+    s.desc.geometry_shader = bind_geometry_shader(Strips{}, machine);
     s.desc.stream_output = StreamOutputDesc{{{0, 6, 2, 0}}, {}, -1}; // value.zw
     std::vector<std::byte> memory(bytes);
     StreamOutputBuffer buffer{memory, 0};
@@ -197,7 +197,7 @@ TEST(StreamOutput, R86R88StreamsAreIndependentAndOneIsRasterized)
     for (int rasterized : {0, 1}) {
         Scene s;
         s.call.topology = PrimitiveTopology::PointList;
-        s.desc.geometry_shader = make_geometry_program(TwoStreams{}, {});
+        s.desc.geometry_shader = bind_geometry_shader(TwoStreams{}, {});
         s.desc.stream_output = StreamOutputDesc{{{0, 4, 1, 0}, {1, 4, 1, 1}}, {}, rasterized};
         std::vector<std::byte> zero(4), one(400);
         StreamOutputBuffer buffers[2] = {{zero, 0}, {one, 0}};
@@ -211,7 +211,7 @@ TEST(StreamOutput, R86R88StreamsAreIndependentAndOneIsRasterized)
         EXPECT_EQ(s.covered(), 5);
     }
     Scene bad; // more than one stream needs points
-    bad.desc.geometry_shader = make_geometry_program(PassTriangle{}, {});
+    bad.desc.geometry_shader = bind_geometry_shader(PassTriangle{}, {});
     bad.desc.stream_output = StreamOutputDesc{{{1, 4, 1, 0}}, {}, 0};
     bad.add_full();
     EXPECT_THROW(bad.draw(), Error);
@@ -300,7 +300,7 @@ TEST(Pipeline, R3R4I29PatchesWithoutTessellationGoToGeometryShaderOrStreamOutput
     for (int i = 0; i < 10; ++i)
         s.add(3.5f + float(i / 5), 2.5f, 0.5f, 1, {float(1 << i), 0, 0, 0});
     EXPECT_THROW(s.draw(), Error);
-    s.desc.geometry_shader = make_geometry_program(PatchToPoint{}, {});
+    s.desc.geometry_shader = bind_geometry_shader(PatchToPoint{}, {});
     EXPECT_EQ(s.draw().pipeline.GSInvocations, 2u);
     EXPECT_EQ(s.at(3, 2), 31.0f);
     EXPECT_EQ(s.at(4, 2), 31.0f * 32);
@@ -316,7 +316,7 @@ TEST(Pipeline, R3R4I29PatchesWithoutTessellationGoToGeometryShaderOrStreamOutput
 TEST(GeometryShader, R83R84LimitsAreNamed)
 {
     Scene s;
-    s.desc.geometry_shader = make_geometry_program(PassTriangle{}, {});
+    s.desc.geometry_shader = bind_geometry_shader(PassTriangle{}, {});
     EXPECT_NO_THROW(GraphicsPipeline{s.desc});
     s.call.topology = PrimitiveTopology::LineList; // not what it takes
     s.add_full();
@@ -349,7 +349,7 @@ TEST(GeometryShader, R28R82AdjacencyReachesTheGeometryShaderOnly)
     EXPECT_EQ(s.at(5, 2), 2.0f); // the line from vertex 1 to 2, its end not drawn
     EXPECT_EQ(s.covered(), 2);
     s.clear();
-    s.desc.geometry_shader = make_geometry_program(Adjacent{}, {});
+    s.desc.geometry_shader = bind_geometry_shader(Adjacent{}, {});
     s.draw();
     EXPECT_EQ(s.at(5, 2), 1.0f);
     EXPECT_EQ(s.at(5, 2, 1), 4.0f);
@@ -373,7 +373,7 @@ TEST(InputAssembler, R30R34InstancesRestartTheirIds)
     Scene s;
     s.call.topology = PrimitiveTopology::PointList;
     s.call.start_vertex = 0;
-    s.desc.vertex_shader = make_vertex_program(InstanceShader{}, {});
+    s.desc.vertex_shader = bind_vertex_shader(InstanceShader{}, {});
     s.desc.stream_output = StreamOutputDesc{{{0, 4, 2, 0}}, {}, -1};
     std::vector<std::byte> memory(1000);
     StreamOutputBuffer buffer{memory, 0};

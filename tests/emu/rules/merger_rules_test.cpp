@@ -42,8 +42,11 @@ TEST(Interpolation, R120ModesAreConstantPerspectiveAndScreenLinear)
     auto const p = s.color.load(15, 0);
     double const t = 15.5 / 64, u = 0.5 / 64;
     EXPECT_EQ(p[0], 5.0f);
-    EXPECT_NEAR(p[2], t, 8 * 0x1p-24);
-    EXPECT_NEAR(p[1], (t / 4) / ((1 - t - u) + t / 4 + u), 8 * 0x1p-24);
+    // Weights are exact here: multiples of 2^-28. So is the sum of 1/w; its reciprocal and that
+    // times the weight round.
+    EXPECT_EQ(double(p[2]), t);
+    double const perspective = (t / 4) / ((1 - t - u) + t / 4 + u);
+    EXPECT_NEAR(p[1], perspective, 2.0001 * 0x1p-24 * perspective);
     EXPECT_EQ(p[3], p[1]); // one sample: centroid is the centre
     // I-15: constant attributes pass bits, a NaN with payload too; an integer target shows them.
     Scene bits(16, 16, 1, Format::R32G32B32A32_UINT);

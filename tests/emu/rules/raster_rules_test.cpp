@@ -70,7 +70,7 @@ TEST(Clipping, R92CullDistanceDropsAPrimitiveAllOfWhoseVerticesAreBelowZero)
 {
     auto const covered = [](std::array<float, 3> cull) {
         Scene s;
-        s.desc.vertex_shader = make_vertex_program(DistanceShader{}, {});
+        s.desc.vertex_shader = bind_vertex_shader(DistanceShader{}, {});
         for (std::size_t i = 0; i < 3; ++i)
             s.add(i == 1 ? 32.0f : 0, i == 2 ? 32.0f : 0, 0.5f, 1, {1, 1, cull[i], 1});
         s.draw();
@@ -84,7 +84,7 @@ TEST(Clipping, R92CullDistanceDropsAPrimitiveAllOfWhoseVerticesAreBelowZero)
 TEST(Clipping, R93ClipDistanceKeepsTheSamplesWhereItIsNotNegative)
 {
     Scene s;
-    s.desc.vertex_shader = make_vertex_program(DistanceShader{}, {});
+    s.desc.vertex_shader = bind_vertex_shader(DistanceShader{}, {});
     s.add(0, 0, 0.5f, 1, {1, -8, 1, 1}).add(32, 0, 0.5f, 1, {1, 24, 1, 1});
     s.add(0, 32, 0.5f, 1, {1, -8, 1, 1}); // distance x - 8
     s.draw();
@@ -92,7 +92,7 @@ TEST(Clipping, R93ClipDistanceKeepsTheSamplesWhereItIsNotNegative)
     EXPECT_NE(s.at(8, 5), 0.0f);
     EXPECT_EQ(s.covered(), 8 * 16);
     Scene nan;
-    nan.desc.vertex_shader = make_vertex_program(DistanceShader{}, {});
+    nan.desc.vertex_shader = bind_vertex_shader(DistanceShader{}, {});
     nan.add(0, 0, 0.5f, 1, {1, 1, 1, 1}).add(32, 0, 0.5f, 1, {1, kNan, 1, 1});
     nan.add(0, 32, 0.5f, 1, {1, 1, 1, 1});
     nan.draw();
@@ -327,13 +327,25 @@ TEST(Lines, R107MultisampledLinesAreRectanglesOneAndTwoFifthsWide)
     s.target.rasterizer.multisample_enable = true;
     s.add(4, 16, 0.5f, 1, {1, 0, 0, 0}).add(24, 16, 0.5f, 1, {2, 0, 0, 0});
     s.draw();
-    // 20 x 1.4 pixels of 8 samples: the rim's samples decide the rest.
-    EXPECT_NEAR(s.covered(), 20 * 1.4 * 8, 20);
-    for (int k = 0; k < 8; ++k) // constant across, growing along
-        if (float const v = s.at(14, 15, 0, k); v != 0) {
-            EXPECT_NEAR(v, 1.5f, 0.05f);
+    // The rectangle: x from 4 to 24, y from 16 - 179/256 to 16 + 179/256. Of the samples' offsets
+    // from a pixel's centre, in 1/16 (-7, -5, -3, -1, 1, 3, 5, 7), those from -3 on lie in it in
+    // row 15 and those up to 3 in row 16; each has 6. Along the line pixels have all or none.
+    EXPECT_EQ(s.covered(), 20 * (6 + 6));
+    for (int x = 0; x < 32; ++x)
+        for (int y : {14, 15, 16, 17}) {
+            int samples = 0;
+            for (int k = 0; k < 8; ++k) {
+                float const v = s.at(x, y, 0, k);
+                if (v == 0) continue;
+                ++samples;
+                // Of the pixel's centre, so constant across and growing along. Three roundings: the
+                // reciprocal of the squared length and that times the distance, of a number up to
+                // 1; a sum up to 2.
+                EXPECT_NEAR(v, 1 + (x + 0.5 - 4) / 20, 3.0001 * 0x1p-24) << x << "," << y;
+            }
+            bool const in = x >= 4 && x < 24 && (y == 15 || y == 16);
+            EXPECT_EQ(samples, in ? 6 : 0) << x << "," << y;
         }
-    EXPECT_EQ(s.at(14, 13), 0.0f);
 }
 
 TEST(Points, R108AreSquaresOfOnePixelAndNeverCulled)

@@ -172,8 +172,8 @@ struct Patches {
     {
         scene.call.topology = PrimitiveTopology::PatchList;
         scene.call.control_points = inputs;
-        scene.desc.hull_shader = make_hull_program(hull, {});
-        scene.desc.domain_shader = make_domain_program(Domain<n>{}, {});
+        scene.desc.hull_shader = bind_hull_shader(hull, {});
+        scene.desc.domain_shader = bind_domain_shader(Domain<n>{}, {});
         scene.desc.partitioning = Partitioning::Integer;
         scene.desc.input_control_points = inputs;
         for (std::size_t i = 0; i < patches * std::size_t(inputs); ++i)
@@ -223,9 +223,9 @@ TEST(HullShader, R49R50LimitsOfStorageAndInstances)
 {
     auto const build = [](Hull const& hull, auto domain) {
         GraphicsPipelineDesc d;
-        d.vertex_shader = make_vertex_program(SceneVertexShader{}, {});
-        d.hull_shader = make_hull_program(hull, {});
-        d.domain_shader = make_domain_program(domain, {});
+        d.vertex_shader = bind_vertex_shader(SceneVertexShader{}, {});
+        d.hull_shader = bind_hull_shader(hull, {});
+        d.domain_shader = bind_domain_shader(domain, {});
         d.input_control_points = 4;
         return GraphicsPipeline(d);
     };
@@ -249,11 +249,11 @@ TEST(Pipeline, R3R38R44R81LimitsOfRegisters)
 {
     GraphicsPipelineDesc d;
     EXPECT_THROW(GraphicsPipeline{d}, Error); // the vertex shader is always there
-    d.vertex_shader = make_vertex_program(SceneVertexShader{}, {});
+    d.vertex_shader = bind_vertex_shader(SceneVertexShader{}, {});
     EXPECT_NO_THROW(GraphicsPipeline{d});
-    d.hull_shader = make_hull_program(Hull{}, {});
+    d.hull_shader = bind_hull_shader(Hull{}, {});
     EXPECT_THROW(GraphicsPipeline{d}, Error); // both or none
-    d.domain_shader = make_domain_program(Domain<2>{}, {});
+    d.domain_shader = bind_domain_shader(Domain<2>{}, {});
     d.input_control_points = 33;
     EXPECT_THROW(GraphicsPipeline{d}, LimitError);
 }

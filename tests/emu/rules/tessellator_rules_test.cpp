@@ -329,16 +329,28 @@ TEST(Tessellator, R75R76R77R78I10PointOutputGivesEachPointOnce)
 
 TEST(Tessellator, V11V12V13WholeLevelsGiveTheAnalyticGrid)
 {
-    for (auto [p, m, n] :
-         {std::tuple{P::Integer, 4, 7}, {P::FractionalOdd, 5, 9}, {P::FractionalEven, 6, 4}}) {
+    // A place is a number q times the reciprocal 65536/m, rounded to a whole number, so off by q/2
+    // at most; q counts from the nearer end.
+    auto const cell = [](std::uint32_t place, int m) {
+        auto const q = int((2ll * place * m + kFixedOne) / (2 * kFixedOne));
+        EXPECT_LE(2 * std::abs(std::int64_t(place) * m - std::int64_t(kFixedOne) * q),
+                  m * std::min(q, m - q))
+            << place << " of " << m;
+        return q;
+    };
+    for (auto [p, m, n] : {std::tuple{P::Integer, 4, 7},
+                           {P::Integer, 64, 3},
+                           {P::FractionalOdd, 5, 9},
+                           {P::FractionalOdd, 33, 63},
+                           {P::FractionalEven, 6, 4},
+                           {P::FractionalEven, 46, 64}}) {
         TessellatedPatch const t =
             tessellated(D::Quad, p, {float(n), float(m), float(n), float(m), float(m), float(n)});
         EXPECT_EQ(t.points(), std::size_t((m + 1) * (n + 1)));
-        for (std::uint32_t i = 0; i < t.points(); ++i) {
-            double const u = t.u[i] / 65536.0 * m, v = t.v[i] / 65536.0 * n;
-            EXPECT_NEAR(u, std::round(u), 0.01);
-            EXPECT_NEAR(v, std::round(v), 0.01);
-        }
+        std::set<std::pair<int, int>> cells;
+        for (std::uint32_t i = 0; i < t.points(); ++i)
+            cells.emplace(cell(t.u[i], m), cell(t.v[i], n));
+        EXPECT_EQ(cells.size(), t.points());
     }
     // V13: an inner level of 1 beside larger ones acts as 2 (integer) or 3 (odd).
     EXPECT_EQ(tessellated(D::Quad, P::Integer, {3, 3, 3, 3, 1, 1}).indices,
@@ -436,8 +448,8 @@ TEST(Tessellator, R69V17WindingFrontFaceAndFlipDecideWhetherAQuadIsDrawn)
                     Scene s(32, 32);
                     s.call.topology = PrimitiveTopology::PatchList;
                     s.call.control_points = 1;
-                    s.desc.hull_shader = make_hull_program(FlatHull{}, {});
-                    s.desc.domain_shader = make_domain_program(FlatDomain{flip}, {});
+                    s.desc.hull_shader = bind_hull_shader(FlatHull{}, {});
+                    s.desc.domain_shader = bind_domain_shader(FlatDomain{flip}, {});
                     s.desc.output_primitive = ccw ? O::TriangleCcw : O::TriangleCw;
                     s.desc.input_control_points = 1;
                     s.target.rasterizer.cull = cull;
@@ -455,8 +467,8 @@ TEST(Tessellator, R2R54R78I1PatchesLeaveThePipelineInOrder)
     Scene s(32, 32);
     s.call.topology = PrimitiveTopology::PatchList;
     s.call.control_points = 1;
-    s.desc.hull_shader = make_hull_program(FlatHull{3}, {});
-    s.desc.domain_shader = make_domain_program(FlatDomain{}, {});
+    s.desc.hull_shader = bind_hull_shader(FlatHull{3}, {});
+    s.desc.domain_shader = bind_domain_shader(FlatDomain{}, {});
     s.desc.input_control_points = 1;
     for (int i = 0; i < 100; ++i) s.add(0, 0);
     s.call.set_vertices(s.vertices, 8);
@@ -475,8 +487,8 @@ TEST(Tessellator, R75PointsAndLinesOfATessellatedPatchAreDrawn)
     Scene s(32, 32);
     s.call.topology = PrimitiveTopology::PatchList;
     s.call.control_points = 1;
-    s.desc.hull_shader = make_hull_program(FlatHull{3}, {});
-    s.desc.domain_shader = make_domain_program(FlatDomain{}, {});
+    s.desc.hull_shader = bind_hull_shader(FlatHull{3}, {});
+    s.desc.domain_shader = bind_domain_shader(FlatDomain{}, {});
     s.desc.output_primitive = O::Point;
     s.desc.partitioning = P::Integer;
     s.desc.input_control_points = 1;

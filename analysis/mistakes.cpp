@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/mistakes.h"
+
+#include "pipeline/forms/stencil_form.h"
+#include "shaders_cpp/domain_edges.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace tessemu {
+
+std::string_view name_of(Mistake mistake)
+{
+    switch (mistake) {
+    case Mistake::Order:
+        return "order";
+    case Mistake::Contraction:
+        return "contraction";
+    case Mistake::Factors:
+        return "factors";
+    case Mistake::Normals:
+        return "normals";
+    case Mistake::Fold:
+        return "fold";
+    case Mistake::Weights:
+        return "weights";
+    case Mistake::TopLeft:
+        return "topleft";
+    default:
+        return "none";
+    }
+}
+
+std::optional<Mistake> mistake_from_name(std::string_view name)
+{
+    if (name == "none") return Mistake::None;
+    for (Mistake m : kMistakes)
+        if (name_of(m) == name) return m;
+    return {};
+}
+
+PlantedMistake plant_mistake(RefinedMesh const& mesh, Mistake kind)
+{
+    Topology const& topology = mesh.base_topology();
+    ControlMesh const& base = mesh.base();
+    for (std::uint32_t f = 0; f < base.faces(); ++f) {
+        bool shared = true;
+        for (HalfEdge h = base.face_start[f]; h < base.face_start[f + 1]; ++h)
+            shared = shared && topology.twin(h) != Topology::kNone;
+        if (shared) return {kind, f};
+    }
+    return {kind, 0};
+}
+
+namespace {
+
+// A domain program around another one, which makes its mistake at the patch's edges.
+class MistakenEdges final : public DomainProgram {
+public:
+    MistakenEdges(DomainShader right, Mistake mistake) : right_(std::move(right)), mistake_(mistake)
+    {
+    }
+    TessellatorDomain domain() const override { return right_->domain(); }
+    int control_points() const override { return right_->control_points(); }
+    int control_point_floats() const override { return right_->control_point_floats(); }
+    int patch_constant_floats() const override { return right_->patch_constant_floats(); }
+    OutputLayout output() const override { return right_->output(); }
+    std::vector<ResourceInfo> resources(ShaderBinding const&) const override
+    {
+        return right_.resources();
+    }
+
+    void run(ShaderBinding const&, DomainBatch const& batch, StageCounters& counters) const override
+    {
+        DomainBatch b = batch;
+        b.epilog = nullptr;
+        std::vector<float> constants;
+        if (mistake_ == Mistake::Order) {
+            constants = own_direction(b);
+            b.patch_constants = constants.data();
+        }
+        right_.run(b, counters);
+        if (mistake_ == Mistake::Contraction) mirror_pairs(b);
+        if (mistake_ == Mistake::Normals) own_normals(b, counters);
+        if (batch.epilog) batch.epilog->run(batch, std::size_t(0), batch.points);
+    }
+
+private:
+    static constexpr int kRegister = 4; // floats of an EdgeRegister
+    int sides() const { return sides_of(right_->domain()); }
+    float& output(DomainBatch const& b, std::size_t k, std::size_t i) const
+    {
+        return b.outputs[k * b.stride + i];
+    }
+
+    // Edges walked in the patch's own direction: there the field W is -W, backwards.
+    std::vector<float> own_direction(DomainBatch const& b) const
+    {
+        std::vector<float> c(b.patch_constants,
+                             b.patch_constants + b.patch_constant_count * kRegister);
+        for (int k = 0; k < sides(); ++k) {
+            float* const edge = c.data() + 4 * k * kRegister;
+            if (!(edge[3] > 0)) continue;
+            for (int m = 0; m < 4; ++m)
+                for (int x = 0; x < 3; ++x)
+                    edge[m * kRegister + x] = -b.patch_constants[(4 * k + 3 - m) * kRegister + x];
+            for (int m = 0; m < 4; ++m) edge[m * kRegister + 3] = 0;
+        }
+        return c;
+    }
+
+    // Control point 0 to 3 of edge k: of points p, e+, e-, each corner by corner, or of corners
+    // with these as their first three vectors.
+    float3<float> edge_point(DomainBatch const& b, int k, int i) const
+    {
+        int const n = sides(), corner = i < 2 ? k : (k + 1) % n;
+        int const which = i == 0 || i == 3 ? 0 : i; // p, e+, e-
+        int const floats = right_->control_point_floats();
+        float const* const at = b.control_point_count == n
+                                    ? b.control_points + corner * floats + 3 * which
+                                    : b.control_points + (which * n + corner) * floats;
+        return {at[0], at[1], at[2]};
+    }
+
+    DomainEdges<4, float> edges_at(DomainBatch const& b, std::size_t i) const
+    {
+        float const u = b.u[i], v = b.v[i];
+        return domain_edges<float>(sides(), u, v, 1 - u - v, 1 - u, 1 - v);
+    }
+
+    void mirror_pairs(DomainBatch const& b) const
+    {
+        using C = Contracted<float>;
+        SiteState const saved = site_state;
+        site_state = {Contraction::All, 0, 0, 0};
+        int const n = sides();
+        for (std::size_t i = 0; i < b.points; ++i) {
+            DomainEdges<4, float> const at = edges_at(b, i);
+            for (int k = 0; k < n; ++k) {
+                if (!at.on[k] || at.on[(k + 1) % n] || at.on[(k + n - 1) % n]) continue;
+                C const t = at.t[k], s = C(1.0f) - t, ss = s * s, tt = t * t;
+                C const m = C(3.0f) * C(s * t);
+                C const b0 = ss * s, b1 = m * s, b2 = m * t, b3 = tt * t;
+                float3<C> const p0 = edge_point(b, k, 0), p1 = edge_point(b, k, 1),
+                                p2 = edge_point(b, k, 2), p3 = edge_point(b, k, 3);
+                float3<C> const p = (b0 * p0 + b3 * p3) + (b1 * p1 + b2 * p2);
+                output(b, 0, i) = p.x.value;
+                output(b, 1, i) = p.y.value;
+                output(b, 2, i) = p.z.value;
+            }
+        }
+        site_state = saved;
+    }
+
+    // On edges the normal of a point just inside, which is the patch's own.
+    void own_normals(DomainBatch const& b, StageCounters& counters) const
+    {
+        std::size_t const whole = (b.points + 15) / 16 * 16;
+        std::vector<float> u(whole), v(whole),
+            inside(b.stride * std::size_t(right_->output_floats()));
+        for (std::size_t i = 0; i < b.points; ++i) {
+            float const middle = sides() == 4 ? 0.5f : 1.0f / 3;
+            u[i] = b.u[i] + 0x1p-16f * (middle - b.u[i]);
+            v[i] = b.v[i] + 0x1p-16f * (middle - b.v[i]);
+        }
+        DomainBatch other = b;
+        other.u = u.data();
+        other.v = v.data();
+        other.outputs = inside.data();
+        right_.run(other, counters);
+        for (std::size_t i = 0; i < b.points; ++i) {
+            DomainEdges<4, float> const at = edges_at(b, i);
+            bool on = false;
+            for (int k = 0; k < sides(); ++k) on = on || at.on[k];
+            for (std::size_t c = 3; on && c < 6; ++c) output(b, c, i) = inside[c * b.stride + i];
+        }
+    }
+
+    DomainShader right_;
+    Mistake mistake_;
+};
+
+// Whether the draw's domain shader is one that the mistakes of edges are about.
+bool has_cubic_edges(GraphicsPipelineDesc const& d)
+{
+    if (!d.hull_shader || d.domain_shader->patch_constant_floats() != 4) return false;
+    int const n = sides_of(d.domain_shader->domain()), points = d.hull_shader.control_points();
+    return d.domain_shader->domain() != TessellatorDomain::Isoline &&
+           d.hull_shader.patch_constants() >= 5 * n && d.domain_shader->output_floats() == 6 &&
+           (points == n ? d.domain_shader->control_point_floats() >= 9 : points >= 3 * n);
+}
+
+// The tables with the last bit of one weight flipped: the patch gets weights of its own.
+StencilForm::Tables flipped_weight(StencilForm const& form, std::size_t group, std::size_t patch)
+{
+    StencilForm::Tables out = form.tables();
+    StencilForm::Group& g = out.groups[group];
+    std::size_t const words = g.words.size() / g.patches.size();
+    std::uint32_t& first = g.words[patch * words];
+    auto const rows = std::size_t(g.words[patch * words + 2]), inputs = std::size_t(g.inputs);
+    // The type's weights and, behind them, its constants: up to where the next type begins.
+    std::size_t const begin = first;
+    std::size_t end = out.weights.size();
+    for (StencilForm::Group const& other : out.groups)
+        for (std::size_t w = 0; w < other.words.size();
+             w += other.words.size() / other.patches.size())
+            if (other.words[w] > begin) end = std::min(end, std::size_t(other.words[w]));
+    std::vector<float> own(out.weights.begin() + std::ptrdiff_t(begin),
+                           out.weights.begin() + std::ptrdiff_t(end));
+    // A last bit may drown in the sum's rounding: of the weights of the corners' limit points, the
+    // first that changes its point.
+    std::uint32_t const* const ids = g.indices.data() + patch * inputs;
+    std::uint8_t const* const order = g.order.data() + patch * inputs;
+    auto const sum = [&](std::size_t row) {
+        glm::vec3 s(0);
+        for (std::size_t k = 0; k < inputs; ++k)
+            s += own[order[k] * rows + row] * form.mesh().mesh().positions[ids[order[k]]];
+        return s;
+    };
+    std::size_t const sides = g.patches[patch].sides;
+    for (std::size_t at = 0; at < inputs * sides; ++at) {
+        float& weight = own[at / sides * rows + at % sides];
+        float const right = weight;
+        glm::vec3 const before = sum(at % sides);
+        weight = std::bit_cast<float>(std::bit_cast<std::uint32_t>(right) ^ 1u);
+        if (right != 0 && sum(at % sides) != before) break;
+        weight = right;
+    }
+    first = std::uint32_t(out.weights.size());
+    out.weights.insert(out.weights.end(), own.begin(), own.end());
+    return out;
+}
+
+class MistakenPatches final : public PatchMesh {
+public:
+    MistakenPatches(PatchMesh const& right, PlantedMistake const& mistake)
+        : PatchMesh(right.shared_mesh()),
+          right_(right),
+          mistake_(mistake)
+    {
+        if (mistake.kind == Mistake::Weights) plant_weight();
+    }
+
+    CommandList commands(SurfaceSettings const& settings) const override
+    {
+        SurfaceSettings s = settings;
+        // Mirror pairs are symmetric until products are fused.
+        if (mistake_.kind == Mistake::Contraction) s.machine.contraction = Contraction::All;
+        CommandList list = tables_ ? form_->commands(s, *tables_) : right_.commands(s);
+        list.for_each_surface_draw([&](Draw& d) { plant(d); });
+        return list;
+    }
+    std::vector<PatchCount> patch_counts() const override { return right_.patch_counts(); }
+    std::vector<std::string> warnings() const override { return right_.warnings(); }
+
+private:
+    void plant(Draw& d) const
+    {
+        switch (mistake_.kind) {
+        case Mistake::Order:
+        case Mistake::Contraction:
+        case Mistake::Normals:
+            if (!has_cubic_edges(d.pipeline))
+                throw Error(
+                    "the mistake '" + std::string(name_of(mistake_.kind)) +
+                    "' is one of shared cubic edges, which the scheme's patches do not have");
+            d.pipeline.domain_shader = {
+                std::make_shared<MistakenEdges>(d.pipeline.domain_shader, mistake_.kind),
+                d.pipeline.domain_shader.binding()};
+            break;
+        case Mistake::Factors:
+            if (auto const p = patch_of(d.patches)) d.options.mistakes.other_factor = *p;
+            break;
+        case Mistake::Fold:
+            if (auto const p = patch_of(d.patches)) d.options.mistakes.reversed_winding = *p;
+            break;
+        case Mistake::TopLeft:
+            d.options.mistakes.inclusive_edges = true;
+            break;
+        default:
+            break;
+        }
+    }
+    /// The first one of the face among these.
+    std::optional<std::int64_t> patch_of(std::span<PatchPlace const> patches) const
+    {
+        for (std::size_t i = 0; i < patches.size(); ++i)
+            if (patches[i].face == mistake_.face) return std::int64_t(i);
+        return {};
+    }
+    void plant_weight()
+    {
+        form_ = dynamic_cast<StencilForm const*>(&right_);
+        if (!form_)
+            throw Error("the mistake 'weights' needs weights of one patch, which the stencil form "
+                        "has: in other forms a vertex is the same for all its patches");
+        for (std::size_t g = 0; g < form_->tables().groups.size() && !tables_; ++g)
+            if (auto const p = patch_of(form_->tables().groups[g].patches))
+                tables_ = flipped_weight(*form_, g, std::size_t(*p));
+    }
+
+    PatchMesh const& right_;
+    PlantedMistake mistake_;
+    StencilForm const* form_ = nullptr;
+    std::optional<StencilForm::Tables> tables_;
+};
+
+} // namespace
+
+std::unique_ptr<PatchMesh> with_mistake(PatchMesh const& patches, PlantedMistake const& mistake,
+                                        FrameSettings const& frame)
+{
+    if (frame.direct3d10 && (mistake.kind == Mistake::Factors || mistake.kind == Mistake::Fold))
+        throw Error("the mistake '" + std::string(name_of(mistake.kind)) +
+                    "' is the tessellator's, which the Direct3D 10 path does not have");
+    auto out = std::make_unique<MistakenPatches>(patches, mistake);
+    (void)out->commands(surface_settings(frame)); // throws where a draw has no place for it
+    return out;
+}
+
+} // namespace tessemu

@@ -1,0 +1,52 @@
+// Known mistakes, planted into a patch mesh so that a checker can show that it finds them.
+//
+// Each is a decorator: a patch mesh whose commands are another's with a shader, a table or an
+// option of a draw replaced. What draws knows nothing of them.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pipeline/frame.h"
+
+#include <memory>
+#include <optional>
+#include <string_view>
+
+namespace tessemu {
+
+enum class Mistake {
+    None,
+    Order,       ///< every patch sums its edges left to right in its own direction
+    Contraction, ///< every patch sums its edges in its own direction by mirror pairs,
+                 ///< (b0 p0 + b3 p3) + (b1 p1 + b2 p2), which looks symmetric and is not where
+                 ///< products are fused; the machine contracts all (docs/watertight.md)
+    Factors,     ///< one side of a shared edge gets another tess factor
+    Normals,     ///< the patch's own cross product on edges
+    Fold,        ///< one patch's winding is reversed
+    Weights,     ///< the last bit of one patch's weight for a shared vertex is flipped
+    TopLeft,     ///< a sample on an edge belongs to both triangles
+};
+inline constexpr Mistake kMistakes[] = {Mistake::Order,   Mistake::Contraction, Mistake::Factors,
+                                        Mistake::Normals, Mistake::Fold,        Mistake::Weights,
+                                        Mistake::TopLeft};
+/// "none", "order", "contraction", "factors", "normals", "fold", "weights", "topleft"
+std::string_view name_of(Mistake mistake);
+std::optional<Mistake> mistake_from_name(std::string_view name);
+
+struct PlantedMistake {
+    Mistake kind = Mistake::None;
+    std::uint32_t face = 0; ///< of the file's mesh: where one patch has it, the face's first one
+};
+
+/// A mistake in the first face whose edges all have another face beyond.
+PlantedMistake plant_mistake(RefinedMesh const& mesh, Mistake kind);
+
+/// The patches with a mistake; they refer to `patches`. Mistakes of edges are those of patches
+/// whose domain shader is a WatertightPatch over cubics p, e+, e-.
+///
+/// \param frame  that they will be drawn with
+/// Throws Error where the mistake cannot be planted.
+std::unique_ptr<PatchMesh> with_mistake(PatchMesh const& patches, PlantedMistake const& mistake,
+                                        FrameSettings const& frame);
+
+} // namespace tessemu

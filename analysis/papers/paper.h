@@ -1,0 +1,82 @@
+// Papers' tables and figures beside our own: what one looks like, and the list of those that
+// `reproduce` knows. A paper is a folder here and one line of registry.cpp.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/graphics_state.h"
+#include "io/gpu_model.h"
+#include "pipeline/frame.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tessemu {
+
+/// A cell: what the paper prints, and ours.
+struct PaperCell {
+    std::string row, column;
+    double paper, ours;
+};
+
+struct PaperTable {
+    std::string title;
+    std::vector<PaperCell> cells;
+    std::vector<std::string> remarks; ///< what the paper leaves open, and how we read it
+};
+
+struct PaperFigure {
+    struct Panel {
+        ColorTarget picture;
+        std::string caption;
+    };
+    struct Scale { ///< from blue, 0, to red
+        std::string label;
+        double max;
+    };
+    int columns = 1;
+    std::vector<Panel> panels; ///< row after row
+    std::vector<Scale> scales; ///< of the columns, or none
+    std::vector<std::string> remarks;
+};
+
+/// (done, all) steps
+using PaperProgress = std::function<void(std::size_t, std::size_t)>;
+
+/// A control mesh that a table or figure is made from.
+struct PaperModel {
+    std::string name;
+    bool builtin = true;  ///< otherwise NAME.obj of a folder that the user names
+    bool required = true; ///< otherwise used where it is there
+};
+
+struct PaperInput {
+    std::vector<ControlMesh> meshes; ///< those of PaperItem::models that are there, in that order
+    std::optional<GpuModel> gpu;     ///< PaperItem::gpu
+    int level = 0;                   ///< of a comparison; PaperItem::level by default
+    Machine machine;
+    FrameSettings picture; ///< of a figure's panel: size, samples, background, tess factor
+};
+
+/// A table or a figure that can be reproduced.
+struct PaperItem {
+    std::string name;  ///< "loop09-table1"
+    std::string about; ///< a line for the help
+    bool figure = false;
+    std::vector<PaperModel> models;
+    std::string gpu; ///< a built-in description, or empty
+    int level = 0;   ///< of its comparison; 0: it has none
+    std::function<std::variant<PaperTable, PaperFigure>(PaperInput const&, ThreadPool const&,
+                                                        PaperProgress const&)>
+        run;
+};
+
+/// In the order of the papers.
+std::vector<PaperItem> const& paper_items();
+/// Throws Error that lists the known names.
+PaperItem const& find_paper_item(std::string_view name);
+
+} // namespace tessemu

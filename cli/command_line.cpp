@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+namespace tessemu {
+
+struct Verb::Option {
+    Syntax syntax;
+    Set set;
+    std::vector<std::string> texts; // as given
+};
+
+Verb::Verb(CLI::App& app) : app_(app) {}
+
+Verb::~Verb() = default;
+
+void Verb::add(Syntax syntax, Set set)
+{
+    Option& o = *options_.emplace_back(
+        std::make_unique<Option>(Option{std::move(syntax), std::move(set), {}}));
+    Syntax const& s = o.syntax;
+    // The callback that takes text as it is: CLI11's conversion to strings gives [a,b] and {} a
+    // meaning.
+    CLI::Option* const option = app_.add_option(
+        s.name, [&o](CLI::results_t const& texts) { return o.texts = texts, true; }, s.about);
+    option->type_name(s.type);
+    if (s.many) {
+        option->expected(1, -1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        option->allow_extra_args();
+    }
+    if (s.required) option->required();
+    if (s.fallback) option->default_str(*s.fallback);
+}
+
+void Verb::flag(std::string const& name, bool& value, std::string const& about)
+{
+    app_.add_flag(name, value, about);
+}
+
+void Verb::exclude(std::string const& a, std::string const& b)
+{
+    app_.get_option(a)->excludes(app_.get_option(b));
+}
+
+int Verb::parse_and_work() const
+{
+    for (auto const& o : options_) {
+        std::string const name = o->syntax.name.substr(0, o->syntax.name.find(','));
+        for (std::string const& text : o->texts) o->set(text, name);
+        if (o->texts.empty() && o->syntax.fallback) o->set(*o->syntax.fallback, name);
+    }
+    return work_();
+}
+
+CommandLine::CommandLine(std::string const& name, std::string_view version,
+                         std::string const& about)
+    : name_(name),
+      version_(name + " " + std::string(version)),
+      app_(std::make_unique<CLI::App>(about, name))
+{
+    app_->set_version_flag("--version", version_);
+    app_->require_subcommand(1);
+}
+
+CommandLine::~CommandLine() = default;
+
+Verb& CommandLine::add_verb(std::string const& name, std::string const& about,
+                            std::string const& examples)
+{
+    CLI::App* const app = app_->add_subcommand(name, about);
+    app->set_version_flag("--version", version_);
+    app->footer("Examples:\n" + examples);
+    return *verbs_.emplace_back(std::make_unique<Verb>(*app));
+}
+
+int CommandLine::run(int argc, char const* const* argv)
+{
+    if (argc == 1) {
+        fmt::print(stderr, "{}", app_->help());
+        return 2;
+    }
+    // A verb that has options needs one, or an argument: given none, it shows its help.
+    if (argc == 2)
+        for (auto const& v : verbs_)
+            if (v->app_.get_name() == argv[1] && !v->options_.empty()) {
+                fmt::print(stderr, "{}", v->app_.help());
+                return 2;
+            }
+    try {
+        app_->parse(argc, argv);
+    } catch (CLI::ParseError const& e) {
+        if (e.get_exit_code() == 0) return app_->exit(e);
+        if (app_->get_subcommands().empty()) { // CLI11 does not say which word it did not know
+            std::string verbs;
+            for (auto const& v : verbs_) verbs += " " + v->app_.get_name();
+            fmt::print(stderr, "{}: '{}' is not a verb; there are{}\n", name_, argv[1], verbs);
+            return 2;
+        }
+        fmt::print(stderr, "{}: {}\n", name_, e.what());
+        return 2;
+    }
+    try {
+        for (auto const& v : verbs_)
+            if (v->app_.parsed()) return v->parse_and_work();
+        return 2;
+    } catch (std::exception const& e) {
+        fmt::print(stderr, "{}: {}\n", name_, e.what());
+        return 2;
+    }
+}
+
+} // namespace tessemu

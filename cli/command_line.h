@@ -1,0 +1,122 @@
+// Verbs and their options on the command line. CLI11 is behind it, in one file: its header takes
+// four seconds to compile.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace tessemu {
+
+/// What a verb takes and does.
+///
+/// A parser is a function (text, option) that gives a value, or throws Error that names the option,
+/// the text and what is allowed. Parsers run once every word has its place, so help and missing
+/// arguments come before bad values; in the order of the options; then the verb's work runs. Values
+/// must live as long as the work: it holds them.
+class Verb {
+public:
+    explicit Verb(CLI::App& app);
+    Verb(Verb const&) = delete;
+    ~Verb();
+
+    /// An argument ("MODEL") or option that must be given.
+    template <class T, class Parse>
+    void required(std::string const& name, T& value, Parse parse, std::string const& about)
+    {
+        add({name, about, type_of<T>(), {}, true}, set(value, std::move(parse)));
+    }
+    /// \param fallback  is parsed where the option is not given, and shown in the help
+    template <class T, class Parse>
+    void option(std::string const& name, T& value, Parse parse, std::string const& about,
+                std::string const& fallback)
+    {
+        add({name, about, type_of<T>(), fallback}, set(value, std::move(parse)));
+    }
+    /// Leaves the value alone where the option is not given.
+    template <class T, class Parse>
+    void option(std::string const& name, T& value, Parse parse, std::string const& about)
+    {
+        add({name, about, type_of<T>()}, set(value, std::move(parse)));
+    }
+    /// Takes any number of values, each through the parser.
+    template <class T, class Parse>
+    void list(std::string const& name, std::vector<T>& values, Parse parse,
+              std::string const& about)
+    {
+        add({name, about, type_of<T>(), {}, false, true},
+            [&values, p = std::move(parse)](std::string const& text, std::string const& option) {
+                values.push_back(p(text, option));
+            });
+    }
+    void flag(std::string const& name, bool& value, std::string const& about);
+    /// At most one of two options may be given.
+    void exclude(std::string const& a, std::string const& b);
+    /// \param work  gives the exit status
+    void runs(std::function<int()> work) { work_ = std::move(work); }
+
+private:
+    friend class CommandLine;
+    using Set = std::function<void(std::string const& text, std::string const& option)>;
+    struct Syntax {
+        std::string name, about;
+        char const* type;
+        std::optional<std::string> fallback = {};
+        bool required = false, many = false;
+    };
+    struct Option;
+
+    template <class T> static char const* type_of()
+    {
+        if constexpr (std::is_same_v<T, bool>) return "TEXT"; // two words
+        if constexpr (std::is_integral_v<T> || std::is_same_v<T, std::optional<int>>) return "INT";
+        if constexpr (std::is_floating_point_v<T> || std::is_same_v<T, std::optional<double>>)
+            return "FLOAT";
+        return "TEXT";
+    }
+    template <class T, class Parse> static Set set(T& value, Parse parse)
+    {
+        return [&value, p = std::move(parse)](std::string const& text, std::string const& option) {
+            value = p(text, option);
+        };
+    }
+    void add(Syntax syntax, Set set);
+    int parse_and_work() const;
+
+    CLI::App& app_;
+    std::vector<std::unique_ptr<Option>> options_;
+    std::function<int()> work_;
+};
+
+/// Text as it is.
+inline std::string plain(std::string const& text, std::string const&)
+{
+    return text;
+}
+
+class CommandLine {
+public:
+    CommandLine(std::string const& name, std::string_view version, std::string const& about);
+    ~CommandLine();
+
+    Verb& add_verb(std::string const& name, std::string const& about, std::string const& examples);
+    /// The exit status. Prints help, version, and an error as a line on standard error.
+    int run(int argc, char const* const* argv);
+
+private:
+    std::string name_, version_;
+    std::unique_ptr<CLI::App> app_;
+    std::vector<std::unique_ptr<Verb>> verbs_;
+};
+
+} // namespace tessemu

@@ -1,0 +1,94 @@
+// cost: what a draw counted as time on a described GPU.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/cost.h"
+
+#include "cli/job.h"
+#include "cli/verbs.h"
+#include "io/figure.h"
+#include "io/gpu_file.h"
+#include "io/image_writer.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace tessemu {
+
+namespace {
+
+struct CostRequest {
+    SurfaceRequest surface;
+    PictureRequest picture;
+    RunRequest run;
+    std::string gpu; ///< a path, or a built-in's name
+    std::string output;
+    bool geometry_only = false;
+};
+
+int run(CostRequest o)
+{
+    if (!o.output.empty()) check_image_path(o.output);
+    GpuModel const gpu = load_gpu_model(o.gpu);
+    o.surface.vertex_cache = gpu.vertex_cache;
+    Job job = prepare(o.surface, "cost");
+    set_picture(job, o.picture, o.surface);
+    FrameSettings const& f = job.frame;
+    Config& c = job.header.config;
+    c.emplace_back("gpu", std::filesystem::path(o.gpu).filename().string());
+    c.emplace_back("tess_edge", name_of(f.adaptive));
+    c.emplace_back("geometry_only", o.geometry_only);
+    if (!o.geometry_only) {
+        c.emplace_back("width", std::int64_t(f.width));
+        c.emplace_back("height", std::int64_t(f.height));
+    }
+    ThreadPool const threads(o.run.threads);
+    Stopwatch const clock;
+    DrawStatistics const statistics = o.geometry_only
+                                          ? visit_surface(job.patches(), f, threads, {}).total
+                                          : draw_frame(job.patches(), f, threads).statistics;
+    add_run(job.header, job, threads, clock.seconds());
+    DrawCost const cost = estimate_cost(gpu, statistics);
+    CostSummary summary{gpu.name, cost.bound, gpu.overhead, cost.shaders, cost.seconds, {}, {}};
+    Roofline roofline{fmt::format("{} on {}", job.header.inputs[0].first, gpu.name),
+                      gpu.arithmetic,
+                      16 * gpu.any_fetch,
+                      {}};
+    for (StageCost const& s : cost.stages) {
+        summary.rows.push_back({s.stage, s.bound(), s.arithmetic, s.fetch, s.memory, s.fixed,
+                                s.seconds(), s.operations, s.fetches, s.fetched_bytes,
+                                s.memory_bytes});
+        if (s.operations > 0 && s.fetches > 0 && s.seconds() > 0)
+            roofline.points.push_back(
+                {s.stage, s.operations / (16 * s.fetches), s.operations / s.seconds()});
+    }
+    summary.sources.assign(gpu.sources.begin(), gpu.sources.end());
+    if (!o.output.empty()) write_roofline(roofline, o.output);
+    if (!o.run.json.empty()) write_result(o.run.json, cost_report(job.header, summary));
+    if (o.run.json != "-") fmt::print("{}", cost_table(summary));
+    return 0;
+}
+
+} // namespace
+
+void add_cost(CommandLine& program)
+{
+    auto const o = std::make_shared<CostRequest>();
+    Verb& verb =
+        program.add_verb("cost", "predicted time by stage on a described GPU, and what bounds it",
+                         "  tessemu cost jug --tess 16\n"
+                         "  tessemu cost cage.obj --direct3d 10 --geometry-only -o roofline.png\n"
+                         "  tessemu cost cage.obj --gpu my_gpu.json --json cost.json");
+    std::string known;
+    for (BuiltinGpu const& g : builtin_gpus())
+        known += (known.empty() ? "" : " or ") + std::string(g.name);
+    verb.option("--gpu", o->gpu, plain, "a file, or " + known, std::string(builtin_gpus()[0].name));
+    verb.option("-o", o->output, plain, "roofline picture, .png or .exr");
+    verb.flag("--geometry-only", o->geometry_only, "without rasterization");
+    add_options(verb, o->picture);
+    add_options(verb, o->surface);
+    add_options(verb, o->run);
+    verb.runs([o] { return run(*o); });
+}
+
+} // namespace tessemu

@@ -1,0 +1,229 @@
+// draw: pictures of a surface and what every stage did.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/error_view.h"
+#include "cli/job.h"
+#include "cli/verbs.h"
+#include "io/figure.h"
+#include "io/image_writer.h"
+#include "pipeline/colored_mesh.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace tessemu {
+
+namespace {
+
+struct ViewRequest {
+    enum class Shows { Surface, Cage, Error };
+    Shows shows = Shows::Surface;
+    View view = View::Lit; ///< of the surface
+};
+
+/// What is red in the error view.
+struct ErrorMax {
+    double position, angle;
+};
+
+struct DrawRequest {
+    SurfaceRequest surface;
+    PictureRequest picture;
+    RunRequest run;
+    std::string output;
+    ViewRequest view;
+    std::optional<ErrorMax> error_max; ///< none: from the errors
+    int level = 0;
+    int samples = 1;
+    CullMode cull = CullMode::None;
+};
+
+std::string name_of(ViewRequest const& v)
+{
+    if (v.shows == ViewRequest::Shows::Surface) return std::string(name_of(v.view));
+    return v.shows == ViewRequest::Shows::Cage ? "cage" : "error";
+}
+
+std::string_view name_of(CullMode cull)
+{
+    return cull == CullMode::None ? "none" : cull == CullMode::Back ? "back" : "front";
+}
+
+auto view_parser()
+{
+    std::vector<std::pair<std::string, ViewRequest>> words;
+    for (View v : kViews) words.push_back({std::string(name_of(v)), {{}, v}});
+    words.push_back({"cage", {ViewRequest::Shows::Cage}});
+    words.push_back({"error", {ViewRequest::Shows::Error}});
+    return one_of(std::move(words));
+}
+
+std::optional<ErrorMax> parse_error_max(std::string const& text, std::string const& option)
+{
+    if (text == "auto") return {};
+    auto const parts = split(text, ',');
+    if (parts.size() != 2) refuse(text, option, "auto or POSITION,ANGLE");
+    ErrorMax const out{finite_number(parts[0], option), finite_number(parts[1], option)};
+    if (!(out.position > 0 && out.angle > 0))
+        throw Error(option + " is '" + text + "', both must be above 0");
+    return out;
+}
+
+// NAME_0007.png of NAME.png
+std::string numbered(std::string const& path, std::size_t i)
+{
+    std::filesystem::path p = path;
+    p.replace_filename(fmt::format("{}_{:04}{}", p.stem().string(), i, p.extension().string()));
+    return p.string();
+}
+
+std::vector<double> as_doubles(glm::vec3 v)
+{
+    return {v.x, v.y, v.z};
+}
+
+// The mesh that the scheme draws, in the frame's pose.
+void draw_cage(ControlMesh mesh, FrameSettings const& f, ThreadPool const& threads, Frame& frame)
+{
+    if (f.pose)
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+            mesh.positions[v] = f.pose->posed(v, mesh.positions[v]);
+    draw_colored_mesh(control_mesh_picture(Topology(mesh)), f, 0.45f, threads, frame);
+}
+
+int run_error_view(DrawRequest const& o, Job& job)
+{
+    FrameSettings& f = job.frame;
+    if (f.displacement || f.pose || f.direct3d10)
+        throw Error("--view error compares the smooth surface at rest: it takes no --displace, "
+                    "--animate or --direct3d 10");
+    f.adaptive = {};
+    ThreadPool const threads(o.run.threads);
+    Stopwatch const clock;
+    EqualParameterErrors const e = equal_parameter_errors(job.patches(), f, o.level, threads);
+    if (e.triangles.empty())
+        throw Error(o.surface.model.model + ": --view error needs quads, the mesh has none");
+    double const position =
+        o.error_max ? o.error_max->position : quantile(e.distance, e.weight, 0.99);
+    double const normal = o.error_max ? o.error_max->angle : quantile(e.angle, e.weight, 0.99);
+    ErrorView const view = draw_error(e, f, position, normal, threads);
+    add_run(job.header, job, threads, clock.seconds());
+    Config& c = job.header.config;
+    c.emplace_back("width", std::int64_t(f.width));
+    c.emplace_back("height", std::int64_t(f.height));
+    c.emplace_back("view", name_of(o.view));
+    c.emplace_back("level", std::int64_t(o.level));
+    std::vector<ErrorRow> const rows{
+        error_row("position", "equal parameter", "diagonal", e.position_statistics()),
+        error_row("normal", "equal parameter", "radians", e.normal_statistics())};
+    std::string const scheme = o.surface.model.scheme->info().name;
+    if (!o.output.empty())
+        write_figure(
+            {2,
+             {{&view.position, scheme + ": position"}, {&view.normal, scheme + ": normal"}},
+             {{"distance / diagonal", position}, {"angle, radians", normal}}},
+            o.output);
+    if (!o.run.json.empty()) write_result(o.run.json, compare_report(job.header, e.diagonal, rows));
+    if (o.run.json != "-") fmt::print("{}", compare_table(rows));
+    return 0;
+}
+
+int run(DrawRequest const& o)
+{
+    if (!o.output.empty()) check_image_path(o.output);
+    Job job = prepare(o.surface, "draw");
+    set_picture(job, o.picture, o.surface);
+    if (o.view.shows == ViewRequest::Shows::Error) return run_error_view(o, job);
+    FrameSettings& f = job.frame;
+    f.view = o.view.view;
+    f.cull = o.cull;
+    f.samples = o.samples;
+    if (o.output.ends_with(".exr")) f.color_format = Format::R32G32B32A32_FLOAT;
+
+    Config& c = job.header.config;
+    c.emplace_back("width", std::int64_t(f.width));
+    c.emplace_back("height", std::int64_t(f.height));
+    c.emplace_back("tess_edge", name_of(f.adaptive));
+    c.emplace_back("view", name_of(o.view));
+    c.emplace_back("cull", std::string(name_of(f.cull)));
+    c.emplace_back("samples", std::int64_t(f.samples));
+    c.emplace_back("color_format", std::string(info(f.color_format).name));
+    c.emplace_back("camera_eye", as_doubles(f.camera.eye));
+    c.emplace_back("camera_target", as_doubles(f.camera.target));
+    c.emplace_back("camera_up", as_doubles(f.camera.up));
+    c.emplace_back("camera_focal", double(f.camera.focal));
+    if (job.poses.size() > 1) c.emplace_back("frames", std::int64_t(job.poses.size()));
+
+    ThreadPool const threads(o.run.threads);
+    ProgressBar bar;
+    Stopwatch const clock;
+    Frame frame(f);
+    std::vector<SequenceFrame> sequence;
+    for (std::size_t i = 0; i < job.poses.size(); ++i) {
+        f.pose = job.poses[i].pose;
+        if (o.view.shows == ViewRequest::Shows::Cage)
+            draw_cage(job.surface.mesh->mesh(), f, threads, frame);
+        else
+            draw_frame(job.patches(), f, threads, frame, [&](std::size_t n, std::size_t all) {
+                bar(i * all + n, job.poses.size() * all);
+            });
+        if (job.poses.size() == 1) break;
+        sequence.push_back({job.poses[i].phase, f.pose->bytes(), frame.statistics,
+                            sha256_of_targets(frame.color, frame.depth)});
+        if (!o.output.empty()) write_image(frame.color, numbered(o.output, i));
+    }
+    bar.clear();
+    add_run(job.header, job, threads, clock.seconds());
+    if (!sequence.empty()) {
+        if (!o.run.json.empty()) write_result(o.run.json, sequence_report(job.header, sequence));
+        if (o.run.json != "-") fmt::print("{}", sequence_table(sequence));
+        return 0;
+    }
+    if (!o.output.empty()) write_image(frame.color, o.output);
+    if (!o.run.json.empty()) write_result(o.run.json, draw_report(job.header, frame));
+    if (o.run.json != "-") fmt::print("{}", counters_table(frame.statistics));
+    return 0;
+}
+
+} // namespace
+
+void add_draw(CommandLine& program)
+{
+    auto const o = std::make_shared<DrawRequest>();
+    Verb& verb = program.add_verb(
+        "draw", "draw a control mesh and count what every stage does",
+        "  tessemu draw jug -o jug.png\n"
+        "  tessemu draw cage.obj --tess 16 --view patches -o patches.png --json counters.json\n"
+        "  tessemu draw cage.obj --camera from=1,0.5,0 --size 1920x1080 -o side.exr\n"
+        "  tessemu draw jug --tess 32 --displace studs -o studs.png\n"
+        "  tessemu draw jug --animate sway --frames 12 -o sway.png --json sway.json\n"
+        "  tessemu draw cage.obj --view error -o error.png");
+    verb.option("-o", o->output, plain, "picture, .png or .exr");
+    add_options(verb, o->picture);
+    verb.option(
+        "--view", o->view, view_parser(),
+        "lit, normals, patches, depth, wire, coverage: how often a pixel is covered, before "
+        "depth; cage: the control mesh; error: against the Catmull-Clark limit surface",
+        "lit");
+    verb.option("--error-max", o->error_max, parse_error_max,
+                "of the error view: POSITION,ANGLE that are red, in diagonals and radians; auto: "
+                "what 99 % of the area stays below",
+                "auto");
+    add_level(verb, o->level, "of the error view: 2^level segments an edge, 1 to 6");
+    verb.option("--frames", o->surface.animate.frames, whole(1, 10000),
+                "pictures of one period of the motion, numbered: NAME_0000.png and so on", "1");
+    verb.option("--samples", o->samples, one_of<int>({{"1", 1}, {"2", 2}, {"4", 4}, {"8", 8}}),
+                "1, 2, 4 or 8 samples a pixel, resolved", "1");
+    verb.option(
+        "--cull", o->cull,
+        one_of<CullMode>(
+            {{"none", CullMode::None}, {"back", CullMode::Back}, {"front", CullMode::Front}}),
+        "none, back, front", "none");
+    add_options(verb, o->surface);
+    add_vertex_cache(verb, o->surface);
+    add_options(verb, o->run);
+    verb.runs([o] { return run(*o); });
+}
+
+} // namespace tessemu

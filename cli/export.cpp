@@ -1,0 +1,63 @@
+// export: the tessellated mesh.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/job.h"
+#include "cli/verbs.h"
+#include "io/mesh_writer.h"
+
+#include <fmt/format.h>
+
+namespace tessemu {
+
+namespace {
+
+struct ExportRequest {
+    SurfaceRequest surface;
+    RunRequest run;
+    std::string output;
+    bool weld = false;
+};
+
+int run(ExportRequest const& o)
+{
+    Job job = prepare(o.surface, "export");
+    job.header.config.emplace_back("weld", o.weld);
+    MeshWriter writer(o.output, o.weld);
+    ThreadPool const threads(o.run.threads);
+    ProgressBar bar;
+    Stopwatch const clock;
+    std::size_t all = 0, done = 0;
+    for (PatchCount const& c : job.patches().patch_counts()) all += c.patches;
+    ListStatistics const statistics =
+        visit_surface(job.patches(), job.frame, threads, [&](SurfacePatch const& patch) {
+            writer.add(patch);
+            if (++done % 64 == 0) bar(done, all);
+        });
+    bar.clear();
+    writer.finish();
+    add_run(job.header, job, threads, clock.seconds());
+    if (!o.run.json.empty())
+        write_result(o.run.json, export_report(job.header, statistics, writer));
+    if (o.run.json != "-")
+        fmt::print("{}: {} vertices, {} triangles\n", o.output, writer.vertices(),
+                   writer.triangles());
+    return 0;
+}
+
+} // namespace
+
+void add_export(CommandLine& program)
+{
+    auto const o = std::make_shared<ExportRequest>();
+    Verb& verb = program.add_verb("export", "write the tessellated mesh, patch by patch",
+                                  "  tessemu export jug --tess 8 -o jug.ply\n"
+                                  "  tessemu export cage.obj --tess 4 --weld -o cage4.obj");
+    verb.required("-o", o->output, plain, "mesh, .obj or .ply");
+    verb.flag("--weld", o->weld, "join vertices with equal bits");
+    add_options(verb, o->surface);
+    add_vertex_cache(verb, o->surface);
+    add_options(verb, o->run);
+    verb.runs([o] { return run(*o); });
+}
+
+} // namespace tessemu

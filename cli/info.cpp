@@ -1,0 +1,64 @@
+// info: a control mesh and its patches in figures.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/job.h"
+#include "cli/verbs.h"
+
+#include <fmt/format.h>
+
+namespace tessemu {
+
+namespace {
+
+struct InfoRequest {
+    ModelRequest model;
+    std::string json;
+};
+
+int run(InfoRequest const& o)
+{
+    Model model = load_model(o.model.model);
+    print_warnings(model.warnings);
+    SchemeInfo const info = o.model.scheme->info();
+    ReportHeader header{"info",
+                        config_of(o.model, resolve_parameters(info, o.model.build.set)),
+                        {{model.name, model.sha256}},
+                        model.warnings,
+                        {}};
+    MeshSummary summary;
+    try {
+        summary = summarize(Topology(model.mesh));
+    } catch (MeshError const& e) {
+        throw FormatError(model.path, model.line_of_face(e.face), e.what());
+    }
+    // A mesh that the scheme refuses still has figures: the refusal becomes a warning.
+    std::vector<PatchCount> patches;
+    std::vector<std::string> more;
+    try {
+        SchemeOnMesh const surface = build(std::move(model), o.model);
+        patches = surface.patches->patch_counts();
+        more = surface.warnings;
+    } catch (FormatError const& e) {
+        more.push_back(info.name + " cannot draw this mesh: " + e.what());
+    }
+    print_warnings(more);
+    header.warnings.insert(header.warnings.end(), more.begin(), more.end());
+    if (!o.json.empty()) write_result(o.json, info_report(header, summary, patches));
+    if (o.json != "-") fmt::print("{}", info_table(summary, patches));
+    return 0;
+}
+
+} // namespace
+
+void add_info(CommandLine& program)
+{
+    auto const o = std::make_shared<InfoRequest>();
+    Verb& verb =
+        program.add_verb("info", "figures of a control mesh, and of its patches under a scheme",
+                         "  tessemu info jug\n  tessemu info cage.obj --json info.json");
+    add_options(verb, o->model);
+    add_json(verb, o->json);
+    verb.runs([o] { return run(*o); });
+}
+
+} // namespace tessemu

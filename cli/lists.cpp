@@ -1,0 +1,65 @@
+// schemes, models: what is built in.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/options.h"
+#include "cli/verbs.h"
+#include "pipeline/mesh/builtin_models.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace tessemu {
+
+namespace {
+
+std::string allowed(SchemeParameter const& p)
+{
+    if (!p.words.empty()) return in_words(p.words);
+    bool const low = std::isfinite(p.min), high = std::isfinite(p.max);
+    if (low && high) return fmt::format("{} to {}", p.min, p.max);
+    if (low) return fmt::format("{} or above", p.min);
+    return high ? fmt::format("{} or below", p.max) : "any number";
+}
+
+int list_schemes()
+{
+    for (auto const& scheme : schemes()) {
+        SchemeInfo const i = scheme->info();
+        fmt::print("{}\n    {} section {}: {}\n    takes {}\n", i.name, i.paper, i.section,
+                   i.summary, in_words(i.takes));
+        for (SchemeParameter const& p : i.parameters)
+            fmt::print("    --set {}={}  {}: {}\n", p.name,
+                       p.words.empty() ? fmt::format("{}", p.default_value) : p.words[0],
+                       allowed(p), p.meaning);
+    }
+    return 0;
+}
+
+int list_models()
+{
+    for (BuiltinModel const& m : builtin_models()) {
+        std::string_view about = m.obj.substr(0, m.obj.find('\n'));
+        about.remove_prefix(std::min<std::size_t>(2, about.size()));
+        fmt::print("{:<14} {}\n", m.name, about);
+    }
+    return 0;
+}
+
+} // namespace
+
+void add_schemes(CommandLine& program)
+{
+    program
+        .add_verb("schemes", "list the patch schemes: what they draw, and what can be set",
+                  "  tessemu schemes")
+        .runs(list_schemes);
+}
+
+void add_models(CommandLine& program)
+{
+    program.add_verb("models", "list the built-in control meshes", "  tessemu models")
+        .runs(list_models);
+}
+
+} // namespace tessemu

@@ -1,0 +1,166 @@
+// reproduce: papers' tables and figures beside ours.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/papers/paper.h"
+#include "cli/job.h"
+#include "cli/verbs.h"
+#include "io/figure.h"
+#include "io/gpu_file.h"
+#include "io/image_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace tessemu {
+
+namespace {
+
+struct ReproduceRequest {
+    PaperItem const* item = nullptr;
+    std::string models; ///< folder of the papers' cages
+    std::string output;
+    std::optional<int> level;
+    RunRequest run;
+};
+
+PaperItem const* parse_item(std::string const& text, std::string const&)
+{
+    return &find_paper_item(text);
+}
+
+PaperInput load_input(ReproduceRequest const& o, ReportHeader& header)
+{
+    PaperInput in;
+    for (PaperModel const& m : o.item->models) {
+        std::string const path = m.builtin ? m.name : o.models + "/" + m.name + ".obj";
+        if (!m.required && !std::filesystem::exists(path)) continue;
+        Model model = load_model(path);
+        header.inputs.emplace_back(model.name, model.sha256);
+        in.meshes.push_back(std::move(model.mesh));
+    }
+    if (!o.item->gpu.empty()) in.gpu = load_gpu_model(o.item->gpu);
+    in.level = o.level.value_or(o.item->level);
+    FrameSettings& panel = in.picture;
+    panel.width = panel.height = 360;
+    panel.samples = 4;
+    panel.tess_factor = 16;
+    panel.background = {1, 1, 1, 1};
+    return in;
+}
+
+void show(PaperFigure const& figure, std::string const& output)
+{
+    Figure out{figure.columns, {}, {}};
+    for (PaperFigure::Panel const& p : figure.panels) out.panels.push_back({&p.picture, p.caption});
+    for (PaperFigure::Scale const& scale : figure.scales)
+        out.scales.push_back({scale.label, scale.max});
+    write_figure(out, output);
+    fmt::print("{}\n", output);
+    for (std::string const& remark : figure.remarks) fmt::print("{}\n", remark);
+}
+
+void show(PaperTable const& table, ReportHeader const& header, std::string const& json)
+{
+    std::vector<PaperRow> rows;
+    for (PaperCell const& c : table.cells) rows.push_back({c.row, c.column, c.paper, c.ours});
+    if (!json.empty()) write_result(json, paper_report(header, table.title, rows, table.remarks));
+    if (json != "-") fmt::print("{}", paper_table(table.title, rows, table.remarks));
+}
+
+int run(ReproduceRequest const& o)
+{
+    PaperItem const& item = *o.item;
+    std::string const output = o.output.empty() ? item.name + ".png" : o.output;
+    if (item.figure) check_image_path(output);
+    if (item.figure && !o.run.json.empty())
+        throw Error("--json is of tables; a figure is a picture");
+    if (!item.figure && !o.output.empty()) throw Error("-o is of figures; --json writes a table");
+    if (o.level && item.level == 0) throw Error("--level: " + item.name + " has no level");
+    ReportHeader header{"reproduce", {{"name", item.name}}, {}, {}, {}};
+    PaperInput const in = load_input(o, header);
+    if (item.level != 0) header.config.emplace_back("level", std::int64_t(in.level));
+
+    ThreadPool const threads(o.run.threads);
+    ProgressBar bar;
+    Stopwatch const clock;
+    auto const result = item.run(in, threads, [&](std::size_t n, std::size_t all) { bar(n, all); });
+    bar.clear();
+    header.run = {{"threads", std::int64_t(threads.threads())}, {"seconds", clock.seconds()}};
+    if (item.figure)
+        show(std::get<PaperFigure>(result), output);
+    else
+        show(std::get<PaperTable>(result), header, o.run.json);
+    return 0;
+}
+
+// A text for each table and figure; those left empty are left out.
+template <class TextOf> std::string listed(TextOf const& text_of)
+{
+    std::string out;
+    for (PaperItem const& i : paper_items())
+        if (std::string const text = text_of(i); !text.empty())
+            out += (out.empty() ? "" : ", ") + text;
+    return out;
+}
+
+bool has_model(PaperItem const& item, bool required)
+{
+    return std::any_of(item.models.begin(), item.models.end(),
+                       [&](PaperModel const& m) { return !m.builtin && m.required == required; });
+}
+
+std::string cages()
+{
+    std::vector<std::string> names;
+    for (PaperItem const& i : paper_items())
+        for (PaperModel const& m : i.models)
+            if (!m.builtin && std::find(names.begin(), names.end(), m.name + ".obj") == names.end())
+                names.push_back(m.name + ".obj");
+    std::string out;
+    for (std::string const& n : names) out += (out.empty() ? "" : ", ") + n;
+    return out;
+}
+
+// A name alone, one with cages, and a picture; then all names.
+std::string examples()
+{
+    std::string out;
+    auto const example = [&](std::string const& rest, auto const& wanted) {
+        auto const i = std::find_if(paper_items().begin(), paper_items().end(), wanted);
+        if (i != paper_items().end()) out += "  tessemu reproduce " + i->name + rest + "\n";
+    };
+    example("", [](PaperItem const& i) { return !i.figure && !has_model(i, true); });
+    example(" --models cages", [](PaperItem const& i) { return has_model(i, true); });
+    example(" -o figure.png", [](PaperItem const& i) { return i.figure; });
+    out += "\nNames:";
+    for (PaperItem const& i : paper_items()) out += fmt::format("\n  {:<18} {}", i.name, i.about);
+    return out;
+}
+
+} // namespace
+
+void add_reproduce(CommandLine& program)
+{
+    auto const o = std::make_shared<ReproduceRequest>();
+    Verb& verb = program.add_verb(
+        "reproduce", "a paper's table or figure: its numbers, ours and the ratio; or pictures",
+        examples());
+    verb.required("NAME", o->item, parse_item, "a table or figure, see below");
+    verb.option("--models", o->models, plain,
+                "folder with papers' cages (" + cages() + "): needed by " + listed([](auto& i) {
+                    return has_model(i, true) ? i.name : "";
+                }) + "; shown where they are there by " +
+                    listed([](auto& i) { return has_model(i, false) ? i.name : ""; }),
+                ".");
+    verb.option("-o", o->output, plain, "of a figure: picture, .png or .exr [NAME.png]");
+    verb.option("--level", o->level, whole(1, 6),
+                "both surfaces at 2^level segments an edge, 1 to 6: of " + listed([](auto& i) {
+                    return i.level ? fmt::format("{} [{}]", i.name, i.level) : "";
+                }));
+    add_options(verb, o->run);
+    verb.runs([o] { return run(*o); });
+}
+
+} // namespace tessemu

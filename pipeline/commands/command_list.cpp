@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/commands/command_list.h"
+
+namespace tessemu {
+
+namespace {
+
+OutputLayout output_of(GraphicsPipelineDesc const& d)
+{
+    return d.domain_shader ? d.domain_output() : d.vertex_shader->output();
+}
+
+glm::vec3 as_vector(float3<float> const& v)
+{
+    return {v.x, v.y, v.z};
+}
+
+// Patches that no tessellator made: every vertex as a streamed-out point, patch after patch.
+DrawStatistics visit_grids(Draw const& d, PatchVisitor const& visit, ThreadPool const& threads,
+                           DrawOptions options)
+{
+    std::size_t const points = d.grid->patch.points(), patches = d.patches.size();
+    GraphicsPipelineDesc desc = d.pipeline;
+    auto const floats = std::size_t(output_of(desc).floats);
+    desc.pixel_shader = nullptr;
+    desc.stream_output.emplace();
+    desc.stream_output->rasterized_stream = -1;
+    for (std::size_t k = 0; k < floats; k += 4)
+        desc.stream_output->entries.push_back(
+            {0, std::int16_t(k), std::uint8_t(std::min<std::size_t>(4, floats - k)), 0});
+    DrawCall call = d.call;
+    call.topology = PrimitiveTopology::PointList;
+    call.indices = {};
+    call.vertex_count = std::uint32_t(call.instance_count == patches ? points : patches * points);
+    std::vector<float> vertices(patches * points * floats), patch(points * floats);
+    StreamOutputBuffer buffer{std::as_writable_bytes(std::span(vertices)), 0};
+    options.stream_output = std::span(&buffer, 1);
+    DrawStatistics const statistics =
+        draw(GraphicsPipeline(std::move(desc)), call, nullptr, {}, threads, options);
+    for (std::size_t p = 0; p < patches; ++p) {
+        for (std::size_t i = 0; i < points; ++i)
+            for (std::size_t k = 0; k < floats; ++k)
+                patch[k * points + i] = vertices[(p * points + i) * floats + k];
+        visit({std::uint32_t(p), d.grid.get(), patch.data(), points});
+    }
+    return statistics;
+}
+
+DrawStatistics run_draw(Draw const& d, ThreadPool const& threads, CommandOptions const& o,
+                        DrawProgress const& progress)
+{
+    std::vector<StreamOutputBuffer> streams = d.stream_output; // filled anew each time
+    DrawOptions options = d.options;
+    options.vertex_cache = o.vertex_cache;
+    options.memory = o.memory;
+    options.progress = progress;
+    options.stream_output = streams;
+    std::optional<RasterTarget> own;
+    RasterTarget const* raster = d.shows_surface() ? o.raster : nullptr;
+    if (raster && d.rasterizer) {
+        own = *raster;
+        own->rasterizer = *d.rasterizer;
+        raster = &*own;
+    }
+    PatchVisitor visit;
+    if (o.visit && d.shows_surface())
+        visit = [&](ShadedPatch const& patch) { o.visit(SurfacePatch(d, patch)); };
+    DrawStatistics s;
+    if (d.grid && visit) {
+        s += visit_grids(d, visit, threads, options);
+        if (!raster) return s;
+        visit = {};
+    }
+    s += draw(GraphicsPipeline(d.pipeline), d.call, raster, visit, threads, options);
+    return s;
+}
+
+} // namespace
+
+std::size_t CommandList::patches() const
+{
+    std::size_t n = 0;
+    for_each_surface_draw([&](Draw const& d) { n += d.patches.size(); });
+    return n;
+}
+
+SurfacePatch::SurfacePatch(Draw const& draw, ShadedPatch const& patch)
+    : draw_(&draw),
+      patch_(patch),
+      floats_(std::size_t(output_of(draw.pipeline).floats))
+{
+}
+
+SurfaceVertex SurfacePatch::vertex(std::size_t i) const
+{
+    if (floats_ == std::size_t(scalar_count<DisplacedVertex<float>>())) {
+        auto const v = load_column<DisplacedVertex<float>>(patch_.outputs + i, patch_.stride);
+        return {{v.position.x, v.position.y, v.position.z},
+                as_vector(v.normal),
+                as_vector(v.base),
+                {v.coordinates.x, v.coordinates.y}};
+    }
+    auto const v = load_column<ShadedVertex<float>>(patch_.outputs + i, patch_.stride);
+    glm::vec3 const p(v.position.x, v.position.y, v.position.z);
+    return {p, as_vector(v.normal), p};
+}
+
+std::vector<float> SurfacePatch::scalars(std::size_t i) const
+{
+    std::vector<float> out(floats_);
+    for (std::size_t k = 0; k < floats_; ++k) out[k] = patch_.outputs[k * patch_.stride + i];
+    return out;
+}
+
+ListStatistics run_commands(CommandList const& list, ThreadPool const& threads,
+                            CommandOptions const& given)
+{
+    DrawMemory own; // serves draw after draw
+    CommandOptions options = given;
+    if (!options.memory) options.memory = &own;
+    ListStatistics out;
+    std::size_t const all = list.patches();
+    std::size_t done = 0;
+    auto const count = [&](char const* kind, std::string const& name, DrawStatistics const& s) {
+        out.total += s;
+        bool const like = !out.commands.empty() && out.commands.back().kind == kind &&
+                          out.commands.back().name == name;
+        if (!like) out.commands.push_back({kind, name, 0, {}});
+        ++out.commands.back().number;
+        out.commands.back().statistics += s;
+    };
+    for (Command const& c : list.commands) {
+        if (Dispatch const* const d = std::get_if<Dispatch>(&c)) {
+            count("dispatch", d->name, dispatch(d->shader, d->groups, threads));
+            continue;
+        }
+        Draw const& d = std::get<Draw>(c);
+        DrawProgress progress;
+        if (options.progress && d.shows_surface())
+            progress = [&](std::size_t n, std::size_t) { options.progress(done + n, all); };
+        count("draw", d.name, run_draw(d, threads, options, progress));
+        done += d.patches.size();
+    }
+    return out;
+}
+
+} // namespace tessemu

@@ -1,0 +1,145 @@
+// A frame as a list of commands, in order: dispatches and draws over buffers.
+//
+// A patch mesh makes the list, others change it: the Direct3D 10 path turns a draw into two, the
+// wire view adds a second drawing of each, a checker's test replaces a shader. Whatever fills a
+// buffer is a command of its own, so a filter that leaves draws of the surface out loses no
+// dispatch.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/compute_shader.h"
+#include "emu/graphics_pipeline.h"
+#include "pipeline/mesh/patch_place.h"
+#include "shaders_cpp/displacement.h"
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include <optional>
+#include <variant>
+
+namespace tessemu {
+
+/// What a patch is, as pictures and figures tell patches apart.
+enum class PatchClass { RegularQuad, IrregularQuad, Triangle, Other };
+
+/// Patches of one shape: one domain shader, one number of control points.
+struct PatchKind {
+    std::string name; ///< "regular quad"
+    PatchClass patch_class = PatchClass::Other;
+};
+
+struct Dispatch {
+    std::string name; ///< what it does: "skinning"
+    ComputeShader shader;
+    std::array<std::uint32_t, 3> groups;
+};
+
+/// A draw that fills buffers, or shows patches of the surface.
+struct Draw {
+    std::string name; ///< what it draws or fills
+    GraphicsPipelineDesc pipeline;
+    DrawCall call;
+    std::vector<StreamOutputBuffer> stream_output = {};
+    std::optional<RasterizerState> rasterizer = {}; ///< instead of the target's
+    /// Those that do not belong to a run: cache, memory, progress and streams are overwritten.
+    DrawOptions options = {};
+
+    // Of a draw that shows patches.
+    PatchKind kind = {};
+    std::span<PatchPlace const> patches = {}; ///< by primitive id; empty: it shows none
+    /// The vertices of each patch, where no tessellator makes them: of an instanced draw vertex i
+    /// of instance p is point i of patch p, of any other vertex p * points + i.
+    std::shared_ptr<DomainPoints const> grid = {};
+
+    bool shows_surface() const { return !patches.empty(); }
+};
+
+using Command = std::variant<Dispatch, Draw>;
+
+struct CommandList {
+    std::vector<Command> commands;
+    std::vector<std::shared_ptr<void const>> memory; ///< what the commands view
+
+    /// work(draw) for each draw of the surface, in order.
+    template <class Work> void for_each_surface_draw(Work&& work)
+    {
+        for (Command& c : commands)
+            if (Draw* const d = std::get_if<Draw>(&c); d && d->shows_surface()) work(*d);
+    }
+    template <class Work> void for_each_surface_draw(Work&& work) const
+    {
+        for (Command const& c : commands)
+            if (Draw const* const d = std::get_if<Draw>(&c); d && d->shows_surface()) work(*d);
+    }
+    /// Leaves out the draws of the surface that `keep` does not want. What fills buffers stays.
+    template <class Keep> void filter_surface_draws(Keep&& keep)
+    {
+        std::erase_if(commands, [&](Command const& c) {
+            Draw const* const d = std::get_if<Draw>(&c);
+            return d && d->shows_surface() && !keep(*d);
+        });
+    }
+    /// Of all draws of the surface.
+    std::size_t patches() const;
+};
+
+/// A point of the surface in object space.
+struct SurfaceVertex {
+    glm::vec3 position;       ///< displaced, where the surface is
+    glm::vec3 normal;         ///< of the smooth surface
+    glm::vec3 smooth;         ///< its point
+    glm::vec2 coordinates{0}; ///< texture coordinates of the patch, where it is displaced
+};
+
+/// A patch as its draw left it: points with a place, and their connectivity.
+class SurfacePatch {
+public:
+    SurfacePatch(Draw const& draw, ShadedPatch const& patch);
+
+    PatchKind const& kind() const { return draw_->kind; }
+    PatchPlace const& place() const { return draw_->patches[patch_.primitive_id]; }
+    std::uint32_t number() const { return patch_.primitive_id; } ///< in its draw
+    DomainPoints const& domain() const { return *patch_.points; }
+    std::size_t points() const { return patch_.points->patch.points(); }
+    std::vector<std::uint32_t> const& triangles() const { return patch_.points->patch.indices; }
+    /// Of a draw whose transform was the identity.
+    SurfaceVertex vertex(std::size_t i) const;
+    /// The whole record that the last stage before the rasterizer wrote.
+    std::vector<float> scalars(std::size_t i) const;
+
+private:
+    Draw const* draw_;
+    ShadedPatch patch_;
+    std::size_t floats_;
+};
+
+using SurfaceVisitor = std::function<void(SurfacePatch const&)>;
+
+/// Like commands in a row, and what they counted.
+struct CommandStatistics {
+    std::string kind; ///< "dispatch", "draw"
+    std::string name;
+    std::uint64_t number = 0; ///< how many
+    DrawStatistics statistics;
+};
+
+struct ListStatistics {
+    DrawStatistics total;
+    std::vector<CommandStatistics> commands;
+};
+
+struct CommandOptions {
+    RasterTarget const* raster = nullptr; ///< none: rasterization is off
+    SurfaceVisitor visit = {};            ///< sees the patches of the surface
+    VertexCacheModel vertex_cache = {};
+    DrawMemory* memory = nullptr;
+    DrawProgress progress = {}; ///< patches done, of all
+};
+
+/// Runs the commands in order.
+ListStatistics run_commands(CommandList const& list, ThreadPool const& threads,
+                            CommandOptions const& options = {});
+
+} // namespace tessemu

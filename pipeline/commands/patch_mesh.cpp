@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/commands/patch_mesh.h"
+
+#include "pipeline/commands/displacement.h"
+
+namespace tessemu {
+
+void VertexSource::bind(DrawCall& call) const
+{
+    call.set_vertices(floats, read);
+    call.vertex_buffers[0].stride = std::uint32_t(stride) * sizeof(float);
+}
+
+VertexSource positions_of(ControlMesh const& mesh)
+{
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+    return {{&mesh.positions.data()->x, mesh.positions.size() * 3}, 3, 3};
+}
+
+void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const& d,
+                    SurfaceSettings const& settings)
+{
+    Draw out;
+    out.name = d.kind.name;
+    out.kind = d.kind;
+    out.patches = d.patches;
+    GraphicsPipelineDesc& desc = out.pipeline;
+    desc.vertex_shader = d.vertex_shader;
+    desc.hull_shader = d.hull_shader;
+    desc.domain_shader = d.domain_shader;
+    PatchEpilog epilog = make_patch_epilog(mesh.base(), d.patches, settings);
+    desc.domain_epilog = std::move(epilog.shader);
+    desc.partitioning = settings.partitioning;
+    desc.output_primitive = OutputPrimitive::TriangleCw;
+    desc.input_control_points = d.control_points;
+    out.call.control_points = d.control_points;
+    d.vertices.bind(out.call);
+    out.call.indices = d.indices;
+    list.commands.emplace_back(std::move(out));
+    list.memory.push_back(std::move(epilog.memory));
+    list.memory.push_back(settings.pose);
+}
+
+std::vector<char> hidden_faces(RefinedMesh const& refined, std::vector<std::string>& warnings)
+{
+    ControlMesh const& base = refined.base();
+    std::vector<char> hidden(base.faces(), 0);
+    for (std::uint32_t f : base.holes) hidden[f] = 1;
+    if (base.boundary == BoundaryRule::None) {
+        std::size_t dropped = 0;
+        for (std::uint32_t f = 0; f < base.faces(); ++f)
+            for (std::uint32_t v : base.face(f))
+                if (refined.base_topology().is_boundary(v) && !hidden[f]) hidden[f] = 1, ++dropped;
+        if (dropped)
+            warnings.push_back(std::to_string(dropped) +
+                               " faces at the boundary are not drawn: interpolateboundary is 0");
+    }
+    std::vector<char> out(refined.mesh().faces());
+    for (std::uint32_t f = 0; f < out.size(); ++f) out[f] = hidden[refined.place(f).face];
+    return out;
+}
+
+} // namespace tessemu

@@ -1,0 +1,76 @@
+// Patch mesh: a control mesh in the form that a scheme draws, and the draw of patches that most
+// schemes need.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pipeline/commands/command_list.h"
+#include "pipeline/commands/surface_settings.h"
+#include "pipeline/mesh/refinement.h"
+
+namespace tessemu {
+
+/// Patches of one kind, for `info`: how many, of how many connectivity types, with how many inputs.
+struct PatchCount {
+    PatchKind kind;
+    std::size_t patches = 0, types = 0;
+    int min_inputs = 0, max_inputs = 0;
+};
+
+/// Holds its tables and index buffers; made once, it gives commands for any factor, machine or
+/// view, so sweeps pay for tables once.
+class PatchMesh {
+public:
+    explicit PatchMesh(std::shared_ptr<RefinedMesh const> mesh) : mesh_(std::move(mesh)) {}
+    virtual ~PatchMesh() = default;
+
+    RefinedMesh const& mesh() const { return *mesh_; }
+    std::shared_ptr<RefinedMesh const> const& shared_mesh() const { return mesh_; }
+    /// The surface, without pixel shaders. The list views the patch mesh, which must outlive it.
+    virtual CommandList commands(SurfaceSettings const& settings) const = 0;
+    virtual std::vector<PatchCount> patch_counts() const = 0;
+    /// What the scheme could not honour, in the user's words.
+    virtual std::vector<std::string> warnings() const { return {}; }
+
+private:
+    std::shared_ptr<RefinedMesh const> mesh_;
+};
+
+/// Vertices of a draw: where they lie and how many floats the vertex shader reads of each.
+struct VertexSource {
+    std::span<float const> floats;
+    int read = 3;   ///< floats of a vertex that are read, from its first
+    int stride = 3; ///< floats from vertex to vertex
+
+    void bind(DrawCall& call) const;
+};
+/// The control mesh's positions.
+VertexSource positions_of(ControlMesh const& mesh);
+
+/// What a draw of patches consists of.
+struct PatchDraw {
+    PatchKind kind;
+    VertexSource vertices;
+    int control_points = 0;                 ///< of a patch in the index buffer
+    std::span<std::uint32_t const> indices; ///< `control_points` for each patch
+    std::span<PatchPlace const> patches;    ///< by primitive id
+    VertexShader vertex_shader;
+    HullShader hull_shader;
+    DomainShader domain_shader; ///< gives SurfacePoints
+};
+
+/// The domain shader of a WatertightPatch.
+template <class Surface> DomainShader surface_shader(SurfaceSettings const& settings)
+{
+    return bind_domain_shader(Surface{settings.true_normals}, settings.machine);
+}
+
+/// Appends the draw with the settings' epilog: projection, or displacement and projection.
+void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const& draw,
+                    SurfaceSettings const& settings);
+
+/// Faces of the drawn mesh that are not drawn: the file's holes, and with BoundaryRule::None the
+/// faces at the boundary, with a warning.
+std::vector<char> hidden_faces(RefinedMesh const& mesh, std::vector<std::string>& warnings);
+
+} // namespace tessemu

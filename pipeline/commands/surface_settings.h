@@ -1,0 +1,34 @@
+// What a surface is drawn with, whatever looks at it: a picture, a checker, an export.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/machine.h"
+#include "emu/tessellator.h"
+#include "pipeline/mesh/animation.h"
+#include "shaders_cpp/projection.h"
+#include "shaders_cpp/tess_factor_rule.h"
+
+namespace tessemu {
+
+class Displacement;
+
+struct SurfaceSettings {
+    float tess_factor = 1;        ///< uniform; every edge and the inside of a patch
+    TessFactorRule adaptive_rule; ///< instead of it, unless its kind is Uniform
+    Partitioning partitioning = Partitioning::FractionalOdd;
+    Machine machine;
+    bool true_normals = false; ///< interior normals of the rational surface, not of frozen F
+    std::shared_ptr<Displacement const> displacement; ///< none: the smooth surface
+    std::shared_ptr<Pose const> pose;                 ///< none: the mesh at rest
+    VertexFinish finish;                              ///< from the surface to clip space
+
+    TessFactorRule factor_rule() const
+    {
+        TessFactorRule rule = adaptive_rule;
+        rule.uniform = tess_factor;
+        return rule;
+    }
+};
+
+} // namespace tessemu

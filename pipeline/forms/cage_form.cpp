@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/forms/cage_form.h"
+
+#include <glm/geometric.hpp>
+
+namespace tessemu {
+
+std::vector<glm::vec3> vertex_normals(ControlMesh const& mesh)
+{
+    std::vector<glm::dvec3> sum(mesh.positions.size(), glm::dvec3(0));
+    for (std::size_t f = 0; f < mesh.faces(); ++f) {
+        auto const face = mesh.face(f);
+        glm::dvec3 const origin(mesh.positions[face[0]]);
+        glm::dvec3 area(0);
+        for (std::size_t i = 1; i + 1 < face.size(); ++i)
+            area += cross(glm::dvec3(mesh.positions[face[i]]) - origin,
+                          glm::dvec3(mesh.positions[face[i + 1]]) - origin);
+        for (std::uint32_t v : face) sum[v] += area;
+    }
+    std::vector<glm::vec3> out;
+    for (glm::dvec3 const& n : sum) {
+        double const length = glm::length(n);
+        out.emplace_back(length > 0 ? n / length : glm::dvec3(0));
+    }
+    return out;
+}
+
+namespace {
+
+VertexShader vertex_shader(SurfaceSettings const& s)
+{
+    if (!s.pose) return bind_vertex_shader(NormalVertexShader{}, s.machine);
+    return bind_vertex_shader(SkinnedNormalVertexShader{{{s.pose->skin->vertices, 0, "skin"},
+                                                         {s.pose->bones, 1, "bones"}}},
+                              s.machine);
+}
+
+} // namespace
+
+CageForm::CageForm(std::shared_ptr<RefinedMesh const> refined, Surface surface)
+    : PatchMesh(std::move(refined)),
+      surface_(std::move(surface)),
+      groups_{{{"triangle", PatchClass::Triangle}, 3, {}, {}},
+              {{"quad", PatchClass::IrregularQuad}, 4, {}, {}}}
+{
+    ControlMesh const& control = mesh().mesh();
+    std::vector<glm::vec3> const normals = vertex_normals(control);
+    for (std::size_t v = 0; v < normals.size(); ++v)
+        for (glm::vec3 const& part : {control.positions[v], normals[v]})
+            for (int k = 0; k < 3; ++k) // + 0: no -0, whose sign a sum may or may not keep
+                vertices_.push_back(part[k] + 0.0f);
+    std::vector<char> const hidden = hidden_faces(mesh(), warnings_);
+    for (std::uint32_t f = 0; f < control.faces(); ++f) {
+        if (hidden[f]) continue;
+        auto const face = control.face(f);
+        Group& g = groups_[face.size() - 3];
+        g.patches.push_back(mesh().place(f));
+        g.indices.insert(g.indices.end(), face.begin(), face.end());
+    }
+}
+
+CommandList CageForm::commands(SurfaceSettings const& s) const
+{
+    CommandList list;
+    for (Group const& g : groups_) {
+        if (g.patches.empty()) continue;
+        HullShader const hull =
+            g.sides == 3 ? bind_hull_shader(CageHullShader<TessellatorDomain::Tri>{s.factor_rule()},
+                                            s.machine)
+                         : bind_hull_shader(
+                               CageHullShader<TessellatorDomain::Quad>{s.factor_rule()}, s.machine);
+        add_patch_draw(list, mesh(),
+                       {g.kind,
+                        {vertices_, 6, 6},
+                        g.sides,
+                        g.indices,
+                        g.patches,
+                        vertex_shader(s),
+                        hull,
+                        surface_(g.sides, s)},
+                       s);
+    }
+    return list;
+}
+
+std::vector<PatchCount> CageForm::patch_counts() const
+{
+    std::vector<PatchCount> out;
+    for (Group const& g : groups_)
+        if (!g.patches.empty()) out.push_back({g.kind, g.patches.size(), 1, g.sides, g.sides});
+    return out;
+}
+
+} // namespace tessemu

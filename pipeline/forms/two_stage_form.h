@@ -1,0 +1,70 @@
+// The two-stage form of a scheme (LOOP09 4.1, 4.2): a vertex shader over one-ring textures, a hull
+// shader over corners with the offsets texture. A scheme derives from it and says which shaders.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pipeline/commands/patch_mesh.h"
+#include "pipeline/forms/vertex_rings.h"
+#include "shaders_cpp/two_stage_form/corner_tables.h"
+
+namespace tessemu {
+
+/// What a draw's hull shader reads besides the vertices; see CornerTables.
+struct CornerBuffers {
+    std::span<std::uint32_t const> offsets, edges;
+    std::span<float const> angles;
+};
+
+class TwoStageForm : public PatchMesh {
+public:
+    CommandList commands(SurfaceSettings const& settings) const final;
+    std::vector<PatchCount> patch_counts() const final;
+    std::vector<std::string> warnings() const final { return warnings_; }
+
+protected:
+    struct Kind {
+        PatchKind kind;
+        int sides;
+    };
+    /// Throws LimitError for a vertex with more edges than the vertex shader's registers hold.
+    TwoStageForm(std::shared_ptr<RefinedMesh const> mesh, std::vector<Kind> kinds);
+    /// Sorts the faces by kind: the last line of the scheme's constructor.
+    /// \cost  linear in the faces
+    void make_tables();
+
+    // What a scheme says. Kinds are numbers in the constructor's list.
+    virtual std::size_t kind_of(std::uint32_t face) const = 0;
+    virtual VertexShader vertex_shader(RingTextures const& textures,
+                                       SurfaceSettings const& settings) const = 0;
+    virtual HullShader hull_shader(std::size_t kind, CornerBuffers const& buffers,
+                                   SurfaceSettings const& settings) const = 0;
+    virtual DomainShader domain_shader(std::size_t kind, SurfaceSettings const& settings) const = 0;
+
+private:
+    // Patches of one kind: an index buffer of their corners, and the offsets texture (figure 8).
+    struct Group {
+        std::vector<PatchPlace> patches;
+        std::vector<std::uint32_t> indices, offsets, edges;
+    };
+
+    std::vector<Kind> kinds_;
+    VertexRings rings_;
+    std::vector<float> angles_;
+    std::vector<Group> groups_; // by kind
+    std::vector<std::string> warnings_;
+};
+
+/// A hull shader with CornerTables' members on the buffers of a kind.
+template <class Shader>
+HullShader corner_hull_shader(CornerBuffers const& buffers, SurfaceSettings const& settings)
+{
+    Shader hs;
+    hs.offsets = {buffers.offsets, 0, "corner_offsets"};
+    hs.edges = {buffers.edges, 1, "edge_bits"};
+    hs.angles = {buffers.angles, 2, "angles"};
+    hs.factors = settings.factor_rule();
+    return bind_hull_shader(hs, settings.machine);
+}
+
+} // namespace tessemu

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/forms/vertex_rings.h"
+
+#include "pipeline/mesh/limit_constants.h"
+
+#include <algorithm>
+
+namespace tessemu {
+
+VertexRings::VertexRings(Topology const& topology)
+{
+    ControlMesh const& mesh = topology.mesh();
+    constexpr std::uint32_t kNone = RingTextures::kNone;
+    constexpr auto kWidth = std::size_t(RingTextures::kTextureWidth);
+    std::size_t const vertices = mesh.positions.size();
+    rings.reserve(2 * vertices);
+    for (std::uint32_t v = 0; v < vertices; ++v) {
+        auto const ring = topology.ring(v);
+        bool const boundary = !ring.empty() && topology.is_boundary(v);
+        if (topology.valence(v) > std::uint32_t(RingLayout::kEdges) && !ring.empty())
+            throw LimitError("edges at vertex " + std::to_string(v + 1) +
+                                 ", by the vertex shader's output registers,",
+                             topology.valence(v), std::uint64_t(RingLayout::kEdges));
+        rings.push_back(std::uint32_t(entries.size() / 2));
+        rings.push_back(std::uint32_t(ring.size()) | (boundary ? 256u : 0u));
+        for (HalfEdge h : ring) {
+            bool const quad = mesh.face(topology.face_of(h)).size() == 4;
+            entries.push_back(topology.vertex_of(topology.next(h)));
+            entries.push_back(quad ? topology.vertex_of(topology.next(topology.next(h))) : kNone);
+        }
+        if (boundary) {
+            entries.push_back(topology.vertex_of(topology.previous(ring.back())));
+            entries.push_back(kNone);
+        }
+    }
+    height = int((vertices + kWidth - 1) / kWidth);
+    positions.resize(std::size_t(height) * kWidth * 4);
+    for (std::size_t v = 0; v < vertices; ++v)
+        for (int k = 0; k < 3; ++k) positions[4 * v + std::size_t(k)] = mesh.positions[v][k];
+}
+
+std::uint32_t corner_offsets(Topology const& topology, HalfEdge corner)
+{
+    std::uint32_t const v = topology.vertex_of(corner);
+    auto const faces = std::uint32_t(topology.ring(v).size());
+    bool const boundary = topology.is_boundary(v);
+    std::uint32_t const plus = topology.ring_index(corner);
+    std::uint32_t const minus = boundary ? plus + 1 : (plus + 1) % faces;
+    std::uint32_t const row = faces + (boundary ? std::uint32_t(RingRows::kBoundary) : 0);
+    return plus | minus << 8 | row << 16;
+}
+
+std::vector<double> make_ring_angles()
+{
+    std::vector<double> out(2 * RingRows::kCount);
+    for (int n = 2; n <= RingLayout::kEdges; ++n) {
+        out[std::size_t(2 * n)] = cos_pi(2, n);
+        out[std::size_t(2 * n + 1)] = sin_pi(2, n);
+    }
+    for (int k = 2; k < RingLayout::kEdges; ++k)
+        out[std::size_t(2 * (RingRows::kBoundary + k))] = cos_pi(1, k);
+    return out;
+}
+
+} // namespace tessemu

@@ -1,0 +1,30 @@
+// One-rings of a mesh as the textures that a two-stage vertex shader reads (LOOP09 4.1, figure 7).
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pipeline/mesh/topology.h"
+#include "shaders_cpp/two_stage_form/ring_vertex.h"
+
+namespace tessemu {
+
+/// Memory behind RingTextures.
+struct VertexRings {
+    std::vector<std::uint32_t> rings, entries;
+    std::vector<float> positions; ///< four floats a texel
+    int height = 0;               ///< rows of the position texture
+
+    /// Throws LimitError for a vertex with more edges than the vertex shader's output registers
+    /// hold. Vertices without faces get an empty ring.
+    explicit VertexRings(Topology const& topology);
+};
+
+/// What a hull shader knows of a corner of a face (figure 8): the ring edges of e+ and e- and the
+/// row of its vertex in the ring tables, as CornerTables::offsets has it.
+std::uint32_t corner_offsets(Topology const& topology, HalfEdge corner);
+
+/// CornerTables::angles: each row's cosine, cos(2pi/n), boundary cos(pi/k), a corner 0; and
+/// sin(2pi/n).
+std::vector<double> make_ring_angles();
+
+} // namespace tessemu

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/mesh/connectivity.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+namespace tessemu {
+
+namespace {
+
+// A corner in a number that orders: boundary, faces, position, sides of the faces from the patch
+// on.
+std::uint64_t corner_signature(Topology const& topology, HalfEdge h)
+{
+    std::uint32_t const v = topology.vertex_of(h);
+    auto const ring = topology.ring(v);
+    bool const boundary = topology.is_boundary(v);
+    std::size_t const first = boundary ? 0 : topology.ring_index(h);
+    std::uint64_t pattern = 0;
+    for (std::size_t j = 0; j < ring.size(); ++j) {
+        HalfEdge const g = ring[(first + j) % ring.size()];
+        bool const triangle = topology.mesh().face(topology.face_of(g)).size() == 3;
+        pattern = std::rotl(pattern, 1) ^ (triangle ? 1 : 0);
+    }
+    std::uint64_t const position = boundary ? topology.ring_index(h) : 0;
+    return (pattern & 0xffffffffu) | (position << 32) | (std::uint64_t(ring.size()) << 44) |
+           (std::uint64_t(boundary) << 62);
+}
+
+} // namespace
+
+void find_neighbourhood(Topology const& topology, std::uint32_t face, Neighbourhood& out)
+{
+    ControlMesh const& mesh = topology.mesh();
+    HalfEdge const first = mesh.face_start[face];
+    int const sides = int(mesh.face(face).size());
+    std::array<std::uint64_t, 4> signature{};
+    for (int i = 0; i < sides; ++i)
+        signature[std::size_t(i)] = corner_signature(topology, first + std::uint32_t(i));
+    int best = 0;
+    for (int r = 1; r < sides; ++r)
+        for (int i = 0; i < sides; ++i) {
+            std::uint64_t const a = signature[std::size_t((r + i) % sides)];
+            std::uint64_t const b = signature[std::size_t((best + i) % sides)];
+            if (a == b) continue;
+            if (a < b) best = r;
+            break;
+        }
+
+    out.sides = sides;
+    out.rotation = best;
+    out.inputs.clear();
+    out.key.clear();
+    auto const local = [&](std::uint32_t v) {
+        auto const i = int(std::find(out.inputs.begin(), out.inputs.end(), v) - out.inputs.begin());
+        if (i == int(out.inputs.size())) out.inputs.push_back(v);
+        out.key.push_back(char(i));
+        out.key.push_back(char(i >> 8));
+        return i;
+    };
+    out.key.push_back(char(sides));
+    for (int i = 0; i < sides; ++i) {
+        HalfEdge const h = first + std::uint32_t((best + i) % sides);
+        std::uint32_t const v = topology.vertex_of(h);
+        auto const ring = topology.ring(v);
+        auto const n = std::uint32_t(ring.size());
+        std::uint32_t const j = topology.ring_index(h);
+        CornerNeighbourhood& c = out.corner[i];
+        c.boundary = topology.is_boundary(v);
+        c.position = c.boundary ? int(j) : 0;
+        out.ring_shift[i] = c.boundary ? 0 : int((n - j) % n);
+        c.faces.resize(n);
+        out.key.push_back(char(c.boundary));
+        out.key.push_back(char(n));
+        out.key.push_back(char(c.position));
+        for (std::uint32_t k = 0; k < n; ++k) {
+            HalfEdge g = ring[c.boundary ? k : (j + k) % n];
+            auto& f = c.faces[k];
+            f.sides = int(mesh.face(topology.face_of(g)).size());
+            out.key.push_back(char(f.sides));
+            for (int s = 0; s < f.sides && s < 4; ++s, g = topology.next(g))
+                f.vertices[s] = local(topology.vertex_of(g));
+        }
+    }
+}
+
+} // namespace tessemu

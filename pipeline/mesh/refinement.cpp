@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/mesh/refinement.h"
+
+namespace tessemu {
+
+RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step, int own_steps)
+    : base_(std::make_unique<ControlMesh const>(std::move(mesh))),
+      base_topology_(std::make_unique<Topology const>(*base_)),
+      steps_(steps),
+      own_steps_(own_steps)
+{
+    if (steps < 0 || steps > kMaxSteps)
+        throw LimitError("steps of subdivision", std::uint64_t(std::max(steps, 0)), kMaxSteps);
+    places_.reserve(base_->faces());
+    for (std::uint32_t f = 0; f < base_->faces(); ++f) {
+        PatchPlace p;
+        p.face = f;
+        p.sides = std::uint8_t(base_->face(f).size() == 3 ? 3 : 4);
+        places_.push_back(p);
+    }
+    for (int s = 0; s < steps; ++s) {
+        ControlMesh const& coarse = s ? *mesh_ : *base_;
+        auto fine = std::make_unique<ControlMesh const>(step(s ? *topology_ : *base_topology_));
+        std::vector<PatchPlace> places;
+        places.reserve(fine->faces());
+        for (std::uint32_t f = 0; f < coarse.faces(); ++f) {
+            int const sides = int(coarse.face(f).size());
+            for (int k = 0; k < sides; ++k) places.push_back(split(places_[f], sides, k));
+        }
+        places_ = std::move(places);
+        topology_.reset(); // reads mesh_
+        mesh_ = std::move(fine);
+        topology_ = std::make_unique<Topology const>(*mesh_);
+        if (s + 1 == own_steps && own_steps < steps)
+            reference_ = std::make_unique<ControlMesh const>(*mesh_);
+    }
+}
+
+} // namespace tessemu

@@ -1,0 +1,56 @@
+// A control mesh as a scheme draws it: the file's mesh after some steps of subdivision, each face
+// with its place on the file's mesh.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pipeline/mesh/patch_place.h"
+#include "pipeline/mesh/topology.h"
+
+#include <memory>
+
+namespace tessemu {
+
+/// A step: quads' children are four quads, any other face's a quad for each corner, in the order of
+/// the corners; tags are carried along, each a step less sharp.
+using RefinementStep = ControlMesh (*)(Topology const&);
+
+class RefinedMesh {
+public:
+    static constexpr int kMaxSteps = 7;
+
+    /// \param steps      0 to kMaxSteps
+    /// \param own_steps  how many of them the scheme needs on any account, up to steps
+    /// \cost         memory for the last two meshes, four times larger with each step
+    /// Throws LimitError for more steps and MeshError for a mesh that is no manifold.
+    RefinedMesh(ControlMesh mesh, int steps, RefinementStep step, int own_steps = 0);
+    RefinedMesh(RefinedMesh&&) = default;
+
+    /// The file's mesh.
+    ControlMesh const& base() const { return *base_; }
+    Topology const& base_topology() const { return *base_topology_; }
+    /// What is drawn.
+    ControlMesh const& mesh() const { return steps_ ? *mesh_ : *base_; }
+    Topology const& topology() const { return steps_ ? *topology_ : *base_topology_; }
+    int steps() const { return steps_; }
+    /// The mesh that cameras and sizes are taken from: the file's after the scheme's own steps,
+    /// however often it is subdivided beyond them.
+    ControlMesh const& reference() const
+    {
+        return own_steps_ == 0 ? *base_ : own_steps_ == steps_ ? *mesh_ : *reference_;
+    }
+
+    /// Of a patch on a face of mesh() whose corner 0 is the face's corner `rotation`.
+    PatchPlace place(std::uint32_t face, int rotation = 0) const
+    {
+        return turned(places_[face], rotation);
+    }
+
+private:
+    std::unique_ptr<ControlMesh const> base_, mesh_, reference_;
+    std::unique_ptr<Topology const> base_topology_, topology_;
+    int steps_, own_steps_;
+    std::vector<PatchPlace> places_; // by face of mesh()
+};
+
+} // namespace tessemu

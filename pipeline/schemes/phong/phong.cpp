@@ -1,0 +1,41 @@
+// phong: Phong tessellation (Boubekeur and Alexa 2008), a substitute that HOLL10 compares with.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/forms/cage_form.h"
+#include "pipeline/schemes/scheme.h"
+#include "shaders_cpp/phong/phong_triangle.h"
+
+namespace tessemu {
+
+namespace {
+
+class Phong final : public Scheme {
+public:
+    SchemeInfo info() const override
+    {
+        SchemeInfo info{
+            "phong", "HOLL10", "5 (Boubekeur and Alexa 2008)",
+            "Phong tessellation: triangles pulled towards their vertices' tangent planes"};
+        info.takes.quads = false;
+        info.takes.steps_with_polygons = 0; // which would be quads
+        info.parameters = {{"alpha", "how far, 0: flat", 0.75, 0, 1}};
+        return info;
+    }
+    std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
+                                     Parameters const& parameters) const override
+    {
+        float const alpha = float(parameters.number("alpha"));
+        return std::make_unique<CageForm>(std::move(mesh), [=](int, SurfaceSettings const& s) {
+            return bind_domain_shader(PhongTriangle{alpha}, s.machine);
+        });
+    }
+};
+
+} // namespace
+
+std::unique_ptr<Scheme> make_phong()
+{
+    return std::make_unique<Phong>();
+}
+
+} // namespace tessemu

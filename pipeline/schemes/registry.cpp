@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/schemes/scheme.h"
+
+#include "pipeline/mesh/catmull_clark.h"
+
+#include <algorithm>
+#include <charconv>
+
+namespace tessemu {
+
+namespace {
+// A scheme's file defines such a function; a line below declares and calls it.
+using Make = std::unique_ptr<Scheme>();
+} // namespace
+
+std::vector<std::unique_ptr<Scheme>> const& schemes()
+{
+    static std::vector<std::unique_ptr<Scheme>> const all = [] {
+        std::vector<std::unique_ptr<Scheme>> s;
+        // clang-format off
+        { Make make_gregory_stencil; s.push_back(make_gregory_stencil()); }
+        { Make make_gregory_two_stage; s.push_back(make_gregory_two_stage()); }
+        { Make make_acc; s.push_back(make_acc()); }
+        { Make make_pm; s.push_back(make_pm()); }
+        { Make make_phong; s.push_back(make_phong()); }
+        // clang-format on
+        return s;
+    }();
+    return all;
+}
+
+Scheme const& find_scheme(std::string_view name)
+{
+    std::string known;
+    for (auto const& s : schemes()) {
+        if (s->info().name == name) return *s;
+        known += (known.empty() ? "" : ", ") + s->info().name;
+    }
+    throw Error("scheme '" + std::string(name) + "' is not known; there is " + known);
+}
+
+std::string in_words(MeshRequirements const& t)
+{
+    std::string s = t.quads && t.triangles ? "quads and triangles"
+                    : t.quads              ? "quads"
+                                           : "triangles";
+    if (!t.boundary) s += ", closed meshes only";
+    if (t.steps) s += ", after " + std::to_string(t.steps) + " steps of subdivision";
+    if (!t.creases && !t.corners)
+        s += "; creases and corners are drawn smooth";
+    else if (!t.creases || !t.corners)
+        s += t.creases ? "; corners are drawn smooth" : "; creases are drawn smooth";
+    return s;
+}
+
+namespace {
+
+Parameters::Value parsed(SchemeInfo const& info, SchemeParameter const& p, std::string const& text)
+{
+    std::string const what = info.name + ": " + p.name + " is '" + text + "', it must be ";
+    if (!p.words.empty()) {
+        if (std::find(p.words.begin(), p.words.end(), text) != p.words.end()) return text;
+        std::string words;
+        for (std::size_t i = 0; i < p.words.size(); ++i)
+            words += (i == 0 ? "" : i + 1 == p.words.size() ? " or " : ", ") + p.words[i];
+        throw Error(what + words);
+    }
+    double x = 0;
+    auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
+    if (error != std::errc() || end != text.data() + text.size()) throw Error(what + "a number");
+    if (x >= p.min && x <= p.max) return x;
+    auto const number = [](double d) {
+        char digits[32];
+        return std::string(digits, std::to_chars(digits, digits + sizeof digits, d).ptr);
+    };
+    throw Error(what + "a number from " + number(p.min) + " to " + number(p.max));
+}
+
+} // namespace
+
+Parameters resolve_parameters(SchemeInfo const& info, ParameterTexts const& given)
+{
+    Parameters out;
+    std::string known;
+    for (SchemeParameter const& p : info.parameters) {
+        known += (known.empty() ? "" : ", ") + p.name;
+        if (p.words.empty())
+            out.set(p.name, p.default_value);
+        else
+            out.set(p.name, p.words[0]);
+    }
+    for (auto const& [name, text] : given) {
+        auto const p =
+            std::find_if(info.parameters.begin(), info.parameters.end(),
+                         [&, &n = name](SchemeParameter const& q) { return q.name == n; });
+        if (p == info.parameters.end())
+            throw Error(info.name + " has no parameter '" + name + "'" +
+                        (known.empty() ? "" : "; there is " + known));
+        out.set(name, parsed(info, *p, text));
+    }
+    return out;
+}
+
+namespace {
+
+// What requirements are about, of the file's mesh.
+struct MeshFacts {
+    std::size_t faces = 0, quads = 0, triangles = 0, polygons = 0; // of more than four sides
+    std::uint32_t first_quad = 0, first_triangle = 0, first_polygon = 0;
+    std::uint32_t boundary_face = 0, boundary_vertex = 0;
+    bool boundary = false;
+};
+
+MeshFacts facts_of(Topology const& topology)
+{
+    MeshFacts out;
+    ControlMesh const& mesh = topology.mesh();
+    out.faces = mesh.faces();
+    for (std::uint32_t f = std::uint32_t(mesh.faces()); f-- > 0;) {
+        auto const face = mesh.face(f);
+        if (face.size() > 4) ++out.polygons, out.first_polygon = f;
+        if (face.size() == 4) ++out.quads, out.first_quad = f;
+        if (face.size() == 3) ++out.triangles, out.first_triangle = f;
+        for (std::uint32_t v : face)
+            if (topology.is_boundary(v))
+                out.boundary = true, out.boundary_face = f, out.boundary_vertex = v;
+    }
+    return out;
+}
+
+int steps_of(MeshRequirements const& t, bool polygons, int subdivide)
+{
+    return std::max(subdivide, polygons ? t.steps_with_polygons : t.steps);
+}
+
+bool takes(MeshRequirements const& t, MeshFacts const& m, int subdivide)
+{
+    if (m.boundary && !t.boundary) return false;
+    if (steps_of(t, m.polygons > 0, subdivide) > 0) return t.quads; // which it makes of all faces
+    return !m.polygons && (t.quads || !m.quads) && (t.triangles || !m.triangles);
+}
+
+void refuse(SchemeInfo const& info, MeshFacts const& m, int subdivide)
+{
+    if (takes(info.takes, m, subdivide)) return;
+    std::string others;
+    for (auto const& s : schemes())
+        if (takes(s->info().takes, m, subdivide))
+            others += (others.empty() ? "" : ", ") + s->info().name;
+    std::string const help = others.empty() ? "" : "; schemes that draw this mesh: " + others;
+    auto const sides = [&](char const* good, char const* bad, std::size_t n, std::uint32_t first) {
+        throw MeshError(first, info.name + " draws " + good + " only: " + std::to_string(n) +
+                                   " of " + std::to_string(m.faces) + " faces are " + bad +
+                                   ", the first is face " + std::to_string(first + 1) + help);
+    };
+    char const* const good = info.takes.quads ? "quads" : "triangles";
+    if (steps_of(info.takes, m.polygons > 0, subdivide) > 0) {
+        if (!info.takes.quads) sides(good, "quads after subdivision", m.faces, 0);
+    } else {
+        if (!info.takes.triangles && m.triangles)
+            sides(good, "triangles", m.triangles, m.first_triangle);
+        if (!info.takes.quads && m.quads) sides(good, "quads", m.quads, m.first_quad);
+        if (m.polygons) sides(good, "larger", m.polygons, m.first_polygon);
+    }
+    throw MeshError(m.boundary_face, info.name + " draws closed meshes only: face " +
+                                         std::to_string(m.boundary_face + 1) + " has vertex " +
+                                         std::to_string(m.boundary_vertex + 1) +
+                                         " on the boundary" + help);
+}
+
+void warn_of_tags(SchemeInfo const& info, ControlMesh const& mesh, std::vector<std::string>& out)
+{
+    if (!mesh.creases.empty() && !info.takes.creases)
+        out.push_back(std::to_string(mesh.creases.size()) +
+                      " crease edges are drawn smooth: the scheme knows no creases");
+    if (!mesh.corners.empty() && !info.takes.corners)
+        out.push_back(std::to_string(mesh.corners.size()) +
+                      " sharp corners are drawn smooth: the scheme knows no corners");
+}
+
+} // namespace
+
+SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options)
+{
+    constexpr int kMost = 6;
+    if (options.subdivide < 0 || options.subdivide > kMost)
+        throw LimitError("steps of subdivision", std::uint64_t(std::max(0, options.subdivide)),
+                         kMost);
+    SchemeInfo const info = scheme.info();
+    SchemeOnMesh out;
+    out.parameters = resolve_parameters(info, options.set);
+    std::size_t polygons = 0, largest = 0;
+    for (std::size_t f = 0; f < mesh.faces(); ++f) {
+        largest = std::max(largest, mesh.face(f).size());
+        polygons += mesh.face(f).size() > 4;
+    }
+    int const steps = steps_of(info.takes, polygons > 0, options.subdivide);
+    bool const split = polygons && options.subdivide == 0 && steps > 0;
+    out.mesh = std::make_shared<RefinedMesh const>(std::move(mesh), steps, catmull_clark_step,
+                                                   steps_of(info.takes, polygons > 0, 0));
+    RefinedMesh const& refined = *out.mesh;
+    if (split)
+        out.warnings.push_back(std::to_string(polygons) + " faces have more than 4 sides (up to " +
+                               std::to_string(largest) + "): one Catmull-Clark step makes " +
+                               std::to_string(refined.mesh().faces()) + " quads of the mesh's " +
+                               std::to_string(refined.base().faces()) + " faces");
+    refuse(info, facts_of(refined.base_topology()), options.subdivide);
+    out.patches = scheme.build(out.mesh, out.parameters);
+    std::vector<std::string> const more = out.patches->warnings();
+    out.warnings.insert(out.warnings.end(), more.begin(), more.end());
+    warn_of_tags(info, refined.base(), out.warnings);
+    return out;
+}
+
+} // namespace tessemu

@@ -1,0 +1,104 @@
+// A scheme: a paper's way from a control mesh to draws.
+//
+// A scheme is a class in a folder of its own beside this file, its shaders are in the folder of the
+// same name in shaders_cpp, and one line of registry.cpp makes it known. What meshes it takes and
+// which parameters it has is data: the registry refuses, refines, warns and lists from it.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pipeline/commands/patch_mesh.h"
+
+#include <limits>
+#include <map>
+#include <variant>
+
+namespace tessemu {
+
+/// A free choice that a user may set: a number within limits, or one of some words.
+struct SchemeParameter {
+    std::string name, meaning;
+    double default_value = 0;
+    double min = -std::numeric_limits<double>::infinity();
+    double max = std::numeric_limits<double>::infinity();
+    std::vector<std::string> words = {}; ///< not empty: one of these, the first by default
+};
+
+/// Resolved values of a scheme's parameters.
+class Parameters {
+public:
+    using Value = std::variant<double, std::string>;
+
+    double number(std::string const& name) const { return std::get<double>(values_.at(name)); }
+    std::string const& word(std::string const& name) const
+    {
+        return std::get<std::string>(values_.at(name));
+    }
+    std::map<std::string, Value> const& values() const { return values_; }
+    void set(std::string const& name, Value value) { values_[name] = std::move(value); }
+
+private:
+    std::map<std::string, Value> values_;
+};
+
+/// What meshes a scheme takes.
+struct MeshRequirements {
+    bool quads = true, triangles = true, boundary = true;
+    bool creases = false, corners = false; ///< honoured; otherwise drawn smooth, with a warning
+    /// Steps of subdivision that the scheme asks for: of a mesh of triangles and quads, and where a
+    /// face has more sides.
+    int steps = 0, steps_with_polygons = 1;
+};
+
+struct SchemeInfo {
+    std::string name;    ///< as on the command line
+    std::string paper;   ///< "LOOP09"
+    std::string section; ///< "3, 4.3, 4.6"
+    std::string summary;
+    MeshRequirements takes = {};
+    std::vector<SchemeParameter> parameters = {};
+};
+
+class Scheme {
+public:
+    virtual ~Scheme() = default;
+    virtual SchemeInfo info() const = 0;
+    /// \param mesh        that meets info().takes
+    /// \param parameters  all of info().parameters
+    /// Throws LimitError for a patch that no draw can hold.
+    virtual std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
+                                             Parameters const& parameters) const = 0;
+};
+
+/// All schemes in the order of the papers.
+std::vector<std::unique_ptr<Scheme>> const& schemes();
+/// Throws Error that lists the known names.
+Scheme const& find_scheme(std::string_view name);
+/// "quads and triangles, closed meshes only; creases are drawn smooth"
+std::string in_words(MeshRequirements const& takes);
+
+/// NAME, VALUE as a user wrote them.
+using ParameterTexts = std::vector<std::pair<std::string, std::string>>;
+/// Every parameter, those not given at their defaults. Throws Error that names the parameter, the
+/// value and what is allowed.
+Parameters resolve_parameters(SchemeInfo const& info, ParameterTexts const& given);
+
+/// A mesh under a scheme: what draws, checks and comparisons start from.
+struct SchemeOnMesh {
+    std::shared_ptr<RefinedMesh const> mesh;
+    std::unique_ptr<PatchMesh> patches;
+    Parameters parameters;
+    std::vector<std::string> warnings; ///< what was refined, what could not be honoured
+};
+
+struct BuildOptions {
+    int subdivide = 0; ///< steps of subdivision before the scheme, 0 to 6
+    ParameterTexts set = {};
+};
+
+/// Refines the mesh as options and scheme ask, checks it and builds. Throws MeshError for a mesh
+/// that is no manifold or that the scheme does not take, naming a face of the given mesh;
+/// LimitError; Error.
+SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options = {});
+
+} // namespace tessemu

@@ -1,0 +1,94 @@
+// Shaders of schemes whose control points are the cage's own vertices with their normals: what
+// comes before the domain shader.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/hull_shader.h"
+#include "shaders_cpp/domain_edges.h"
+#include "shaders_cpp/skinning.h"
+#include "shaders_cpp/tess_factor_rule.h"
+
+namespace tessemu {
+
+/// A vertex of the cage: object space, the normal of unit length where it exists.
+template <class T> struct NormalVertex {
+    float3<T> position, normal;
+    static constexpr auto signature()
+    {
+        return std::tuple{&NormalVertex::position, &NormalVertex::normal};
+    }
+};
+
+/// The vertex as it is.
+struct NormalVertexShader {
+    template <class T> using Input = NormalVertex<T>;
+    template <class T> using Output = NormalVertex<T>;
+    template <class T>
+    NormalVertex<T> operator()(VertexInput<T> const&, NormalVertex<T> const& vertex) const
+    {
+        return vertex;
+    }
+};
+
+/// The vertex in a pose.
+struct SkinnedNormalVertexShader {
+    template <class T> using Input = NormalVertex<T>;
+    template <class T> using Output = NormalVertex<T>;
+    SkinBuffers skin;
+
+    std::vector<ResourceInfo> resources() const
+    {
+        return {skin.vertices.info(), skin.bones.info()};
+    }
+    template <class T>
+    NormalVertex<T> operator()(VertexInput<T> const& in, NormalVertex<T> const& vertex) const
+    {
+        float3<T> const position = skin.posed<T>(in.vertex_id, vertex.position);
+        return {position, unit_or_zero(skin.turned<T>(in.vertex_id, vertex.normal))};
+    }
+};
+
+/// Hands control points on; the factors are those of straight edges between them.
+///
+/// An edge runs from the end that comes first by x, y, z: patches on both sides see the same one.
+template <TessellatorDomain kDomain_> struct CageHullShader {
+    static constexpr TessellatorDomain kDomain = kDomain_;
+    static constexpr int kSides = sides_of(kDomain);
+    template <class T> using Input = NormalVertex<T>;
+    template <class T> using ControlPoint = NormalVertex<T>;
+    template <class T> using PatchConstant = ControlVertex<T>; // none
+    template <class T> using Points = ControlPoints<NormalVertex<T>>;
+
+    TessFactorRule factors;
+
+    int control_points() const { return kSides; }
+    int patch_constants() const { return 0; }
+    template <class T>
+    NormalVertex<T> control_point(PatchInput, Points<T> const& in, int_of<T> id) const
+    {
+        return in[id];
+    }
+    template <class T>
+    ControlVertex<T> patch_constant(PatchInput, Points<T> const&, Points<T> const&, int_of<T>) const
+    {
+        return {};
+    }
+    template <class T>
+    std::array<T, 6> tess_factors(PatchInput, Points<T> const&, Points<T> const& out,
+                                  ControlPoints<ControlVertex<T>> const&) const
+    {
+        auto const end = [&](int k) { return out[k % kSides].position; };
+        return factors.template factors<kDomain, T>(
+            [&](int k) {
+                float3<T> const a = end(k), b = end(k + 1);
+                return straight_edge(a, b);
+            },
+            [&](int k) {
+                float3<T> const a = end(k), b = end(k + 1);
+                return (a.x > b.x) | ((a.x == b.x) & ((a.y > b.y) | ((a.y == b.y) & (a.z > b.z))));
+            });
+    }
+};
+
+} // namespace tessemu

@@ -1,0 +1,146 @@
+// The Direct3D 10 path draws the same surface at its own costs.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/commands/direct3d10.h"
+
+#include "io/model.h"
+#include "pipeline/frame.h"
+#include "pipeline/schemes/scheme.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstring>
+
+namespace tessemu {
+namespace {
+
+SchemeOnMesh load(char const* model, char const* scheme)
+{
+    return build_scheme(find_scheme(scheme), load_model(model).mesh);
+}
+
+// Everything that the domain shader wrote, patch by patch.
+std::vector<std::vector<std::uint32_t>> surface(SchemeOnMesh const& m, FrameSettings const& s)
+{
+    std::vector<std::vector<std::uint32_t>> out;
+    visit_surface(*m.patches, s, ThreadPool(), [&](SurfacePatch const& p) {
+        std::vector<std::uint32_t> bits{p.number(), p.place().face};
+        for (std::size_t i = 0; i < p.points(); ++i)
+            for (float x : p.scalars(i)) bits.push_back(std::bit_cast<std::uint32_t>(x));
+        out.push_back(std::move(bits));
+    });
+    return out;
+}
+
+StageStatistics stage(DrawStatistics const& d, std::string const& name)
+{
+    for (StageStatistics const& s : d.stages)
+        if (s.stage == name) return s;
+    ADD_FAILURE() << "no stage " << name;
+    return {};
+}
+
+constexpr std::pair<char const*, char const*> kCases[] = {
+    {"jug", "gregory-stencil"},       {"spindle", "gregory-stencil"}, {"jug", "gregory-two-stage"},
+    {"spindle", "gregory-two-stage"}, {"saddle_star", "acc"},         {"spindle", "pm"}};
+
+TEST(Direct3D10, GivesEverySchemesSurfaceBitForBit)
+{
+    for (auto const& [model, scheme] : kCases) {
+        SchemeOnMesh const m = load(model, scheme);
+        for (Contraction contraction : {Contraction::None, Contraction::Mixed})
+            for (bool moved : {false, true}) {
+                FrameSettings s;
+                s.tess_factor = 5.7f;
+                s.machine.contraction = contraction;
+                s.machine.seed = 3;
+                if (moved) {
+                    s.pose = std::make_shared<Pose>(SpineRig(m.mesh->mesh()).sway(0.3));
+                    s.displacement =
+                        std::make_shared<Displacement>(Displacement::studs(0.2f, 0.05f));
+                }
+                auto const eleven = surface(m, s);
+                s.direct3d10 = true;
+                ASSERT_FALSE(eleven.empty());
+                ASSERT_EQ(surface(m, s), eleven) << model << " " << scheme;
+            }
+    }
+}
+
+TEST(Direct3D10, DrawsTheSamePicture)
+{
+    for (auto const& [model, scheme] : kCases) {
+        SchemeOnMesh const m = load(model, scheme);
+        FrameSettings s;
+        s.width = s.height = 200;
+        s.tess_factor = 3;
+        s.camera = frame_points(m.mesh->mesh().positions, {0.5f, 0.5f, 1}, 1);
+        ThreadPool const threads;
+        Frame const eleven = draw_frame(*m.patches, s, threads);
+        s.direct3d10 = true;
+        Frame const ten = draw_frame(*m.patches, s, threads);
+        for (int y = 0; y < s.height; ++y)
+            ASSERT_EQ(std::memcmp(eleven.color.texel(0, y), ten.color.texel(0, y),
+                                  eleven.color.row_bytes()),
+                      0)
+                << model << " " << scheme << " row " << y;
+        EXPECT_EQ(ten.statistics.pipeline.HSInvocations, 0u);
+        EXPECT_EQ(ten.statistics.pipeline.DSInvocations, 0u);
+        EXPECT_EQ(ten.statistics.pipeline.CPrimitives, eleven.statistics.pipeline.CPrimitives);
+        EXPECT_EQ(ten.statistics.pipeline.PSInvocations, eleven.statistics.pipeline.PSInvocations);
+    }
+}
+
+// The same operations in other stages: the hull shader's in the geometry shader, the domain
+// shader's in the vertex shader; and the same reads of control points, from a buffer.
+TEST(Direct3D10, MovesTheCostsToOtherStages)
+{
+    for (auto const& [model, scheme] : kCases) {
+        SchemeOnMesh const m = load(model, scheme);
+        FrameSettings s;
+        s.tess_factor = 4;
+        s.vertex_cache = vertex_cache_from_name("infinite");
+        DrawStatistics const eleven = visit_surface(*m.patches, s, ThreadPool(), {}).total;
+        s.direct3d10 = true;
+        DrawStatistics const ten = visit_surface(*m.patches, s, ThreadPool(), {}).total;
+        EXPECT_EQ(ten.pipeline.GSInvocations, eleven.pipeline.HSInvocations);
+        EXPECT_EQ(stage(ten, "geometry_shader").flops, stage(eleven, "hull_shader").flops);
+        FlopCount sum = stage(eleven, "vertex_shader").flops;
+        sum += stage(eleven, "domain_shader").flops;
+        EXPECT_EQ(stage(ten, "vertex_shader").flops, sum);
+        EXPECT_EQ(ten.pipeline.VSInvocations,
+                  eleven.pipeline.VSInvocations + eleven.pipeline.DSInvocations);
+        auto const reads = [](StageStatistics const& st, std::string const& name) {
+            for (FetchStatistics const& f : st.fetches)
+                if (f.resource == name) return std::tuple(f.count, f.bytes);
+            return std::tuple(std::uint64_t(0), std::uint64_t(0));
+        };
+        for (char const* name : {"control_points", "patch_constants"})
+            EXPECT_EQ(reads(stage(ten, "vertex_shader"), name),
+                      reads(stage(eleven, "domain_shader"), name))
+                << model << " " << scheme << " " << name;
+        EXPECT_EQ(reads(stage(ten, "geometry_shader"), "vertices"),
+                  reads(stage(eleven, "hull_shader"), "input_control_points"));
+        // What was streamed out is the patches' control points and constants.
+        std::uint64_t streamed = 0;
+        m.patches->commands({}).for_each_surface_draw([&](Draw const& d) {
+            HullShader const& h = d.pipeline.hull_shader;
+            streamed += d.patches.size() * std::uint64_t(h.patch_floats() + h.constant_floats()) *
+                        sizeof(float);
+        });
+        EXPECT_EQ(stage(ten, "stream_output").output_bytes, streamed);
+    }
+}
+
+TEST(Direct3D10, RefusesAdaptiveFactors)
+{
+    SchemeOnMesh const m = load("jug", "gregory-stencil");
+    FrameSettings s;
+    s.direct3d10 = true;
+    s.adaptive.kind = AdaptiveFactors::Kind::Pixels;
+    EXPECT_THROW(visit_surface(*m.patches, s, ThreadPool(), {}), Error);
+}
+
+} // namespace
+} // namespace tessemu

@@ -1,0 +1,128 @@
+// Displaced surfaces stay closed, and points move where they should.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/pipeline/displaced.h"
+
+#include "io/model.h"
+#include "pipeline/schemes/scheme.h"
+#include "tests/support/edges.h"
+#include "tests/support/files.h"
+
+#include <gtest/gtest.h>
+
+namespace tessemu {
+namespace {
+
+void expect_closed_displaced(std::string const& model, char const* scheme)
+{
+    ControlMesh mesh = load_model(model).mesh;
+    test::add_charts(mesh);
+    SchemeOnMesh const m = build_scheme(find_scheme(scheme), std::move(mesh));
+    std::shared_ptr<Displacement const> const maps[] = {
+        std::make_shared<Displacement>(Displacement::studs(0.1f, 0.05f)),
+        std::make_shared<Displacement>(m.mesh->base_topology(), test::noise(2048), 0.05f)};
+    for (Machine const& machine : test::contraction_policies())
+        for (auto const& map : maps) {
+            FrameSettings s;
+            s.tess_factor = 7.3f;
+            s.machine = machine;
+            s.displacement = map;
+            test::EdgeComparison const c = test::compare_edges(*m.patches, s, ThreadPool());
+            ASSERT_GT(c.shared_points, 100u);
+            ASSERT_EQ(c.differing_positions, 0u)
+                << model << " " << scheme << ": " << c.first_difference;
+            ASSERT_EQ(c.differing_normals, 0u) << model << " " << scheme;
+        }
+}
+
+TEST(Displacement, EverySchemeStaysClosedAcrossTextureSeams)
+{
+    for (char const* scheme : {"gregory-stencil", "gregory-two-stage"})
+        for (char const* model : {"jug", "spindle", "saddle_star"})
+            expect_closed_displaced(model, scheme);
+    expect_closed_displaced("saddle_star", "acc");
+    expect_closed_displaced("spindle", "pm");
+    if (std::filesystem::exists(test::shared("models/bigguy.obj")))
+        for (char const* scheme : {"gregory-stencil", "gregory-two-stage", "acc", "pm"})
+            expect_closed_displaced(test::shared("models/bigguy.obj").string(), scheme);
+}
+
+// Where every face has a chart of its own, each patch's own coordinates would tear the surface.
+TEST(Displacement, OwnCoordinatesDifferAcrossASeamAndOwnedOnesDoNot)
+{
+    ControlMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}};
+    mesh.add_face(std::array<std::uint32_t, 4>{0, 1, 4, 3});
+    mesh.add_face(std::array<std::uint32_t, 4>{1, 2, 5, 4});
+    mesh.coordinates = {{0, 0},     {.25f, 0},   {.25f, .25f}, {0, .25f},
+                        {.5f, .5f}, {.75f, .5f}, {.75f, .75f}, {.5f, .75f}};
+    mesh.face_coordinates = {0, 1, 2, 3, 4, 5, 6, 7};
+    Topology const topology(mesh);
+    Displacement const d(topology, test::noise(16), 1);
+    auto const at = [&](std::size_t corner, std::size_t pair, std::size_t k) {
+        return d.corners()[corner * 8 + pair * 2 + k];
+    };
+    // Edge 1-4 belongs to face 0: corners 1 and 2 there. Face 1 has it as corner 7 (vertex 4) to
+    // corner 4 (vertex 1); canonical from vertex 1 to vertex 4.
+    EXPECT_EQ(at(7, 0, 0), .5f);  // own
+    EXPECT_EQ(at(7, 1, 0), .25f); // owner at vertex 1
+    EXPECT_EQ(at(7, 1, 1), 0.0f);
+    EXPECT_EQ(at(7, 2, 1), .25f); // owner at vertex 4
+    EXPECT_EQ(at(7, 3, 1), .25f); // vertex 4 belongs to face 0
+    EXPECT_EQ(at(4, 3, 0), .25f);
+    EXPECT_EQ(at(5, 1, 0), .75f); // an edge of face 1 alone
+    for (std::size_t pair = 1; pair < 3; ++pair)
+        for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(at(1, pair, k), at(7, pair, k));
+}
+
+// P' = P + scale h N of what the shader hands on, recomputed.
+TEST(Displacement, MovesPointsAlongTheNormalByTheMap)
+{
+    ControlMesh mesh = load_model("jug").mesh;
+    test::add_charts(mesh);
+    SchemeOnMesh const m = build_scheme(find_scheme("gregory-stencil"), std::move(mesh));
+    FrameSettings s;
+    s.tess_factor = 5;
+    s.displacement =
+        std::make_shared<Displacement>(m.mesh->base_topology(), test::noise(32), 0.25f);
+    HeightMap const map = s.displacement->height_map();
+    std::size_t inside = 0, moved = 0;
+    DrawStatistics const statistics =
+        visit_surface(*m.patches, s, ThreadPool(), [&](SurfacePatch const& p) {
+            TessellatedPatch const& t = p.domain().patch;
+            for (std::size_t i = 0; i < t.points(); ++i) {
+                if (t.u[i] == 0 || t.v[i] == 0 || t.u[i] + t.v[i] == kFixedOne ||
+                    t.u[i] == kFixedOne || t.v[i] == kFixedOne)
+                    continue;
+                ++inside;
+                SurfaceVertex const at = p.vertex(i);
+                float const h = 0.25f * map(float3<float>(at.smooth.x, at.smooth.y, at.smooth.z),
+                                            float2<float>(at.coordinates.x, at.coordinates.y));
+                for (int k = 0; k < 3; ++k) {
+                    float const along = h * at.normal[k]; // rounds apart from the sum
+                    ASSERT_EQ(at.position[k], at.smooth[k] + along);
+                }
+                moved += h != 0;
+            }
+        }).total;
+    EXPECT_GT(inside, 1000u);
+    EXPECT_GT(moved, inside * 9 / 10);
+    // Inside a quad: its four corners' own coordinates. Every point reads 1 to 4 texels.
+    for (StageStatistics const& stage : statistics.stages)
+        for (FetchStatistics const& f : stage.fetches)
+            if (f.resource == "height_map") {
+                EXPECT_LE(f.count, 4 * stage.invocations);
+                EXPECT_GE(f.count, stage.invocations);
+            }
+}
+
+TEST(Displacement, AMeshWithoutTextureCoordinatesTakesNoImage)
+{
+    ControlMesh const mesh = load_model("spindle").mesh;
+    Topology const topology(mesh);
+    EXPECT_THROW(Displacement(topology, test::noise(4), 1), Error);
+    EXPECT_THROW(Displacement::studs(0, 1), Error);
+}
+
+} // namespace
+} // namespace tessemu
