@@ -18,12 +18,12 @@ struct SkinBuffers {
     Buffer<std::uint32_t> vertices; ///< [vertex][2]: four bone numbers; four weights in 1/255
     Buffer<float> bones;            ///< [bone][3][4]: rows of the matrices
 
-    /// \cost  12 mul and 12 fetches of bones for each weight that is not 0
+    /// \cost  13 mul and 12 fetches of bones for each weight that is not 0
     template <class T> float3<T> posed(int_of<T> vertex, float3<T> const& rest) const
     {
         return blended<T>(vertex, rest, true);
     }
-    /// A direction: turned, not moved. \cost 12 mul and 9 fetches of bones for each weight
+    /// A direction: turned, not moved. \cost 13 mul and 9 fetches of bones for each weight
     template <class T> float3<T> turned(int_of<T> vertex, float3<T> const& rest) const
     {
         return blended<T>(vertex, rest, false);
