@@ -43,13 +43,21 @@ PlantedMistake plant_mistake(RefinedMesh const& mesh, Mistake kind)
 {
     Topology const& topology = mesh.base_topology();
     ControlMesh const& base = mesh.base();
+    std::vector<std::string> warnings; // the patches gave them
+    std::vector<char> const hidden = hidden_faces(mesh, warnings);
+    std::vector<char> drawn(base.faces(), 0);
+    for (std::uint32_t f = 0; f < hidden.size(); ++f)
+        if (!hidden[f]) drawn[mesh.place(f).face] = 1;
     for (std::uint32_t f = 0; f < base.faces(); ++f) {
-        bool shared = true;
-        for (HalfEdge h = base.face_start[f]; h < base.face_start[f + 1]; ++h)
-            shared = shared && topology.twin(h) != Topology::kNone;
+        bool shared = drawn[f] != 0;
+        for (HalfEdge h = base.face_start[f]; h < base.face_start[f + 1]; ++h) {
+            HalfEdge const twin = topology.twin(h);
+            shared = shared && twin != Topology::kNone && drawn[topology.face_of(twin)];
+        }
         if (shared) return {kind, f};
     }
-    return {kind, 0};
+    auto const first = std::find(drawn.begin(), drawn.end(), 1);
+    return {kind, first == drawn.end() ? 0 : std::uint32_t(first - drawn.begin())};
 }
 
 namespace {
@@ -190,8 +198,10 @@ bool has_cubic_edges(GraphicsPipelineDesc const& d)
            (points == n ? d.domain_shader->control_point_floats() >= 9 : points >= 3 * n);
 }
 
-// The tables with the last bit of one weight flipped: the patch gets weights of its own.
-StencilForm::Tables flipped_weight(StencilForm const& form, std::size_t group, std::size_t patch)
+// The tables with the last bit of one weight flipped: the patch gets weights of its own. None where
+// the points drown every last bit.
+std::optional<StencilForm::Tables> flipped_weight(StencilForm const& form, std::size_t group,
+                                                  std::size_t patch)
 {
     StencilForm::Tables out = form.tables();
     StencilForm::Group& g = out.groups[group];
@@ -218,14 +228,16 @@ StencilForm::Tables flipped_weight(StencilForm const& form, std::size_t group, s
         return s;
     };
     std::size_t const sides = g.patches[patch].sides;
-    for (std::size_t at = 0; at < inputs * sides; ++at) {
+    bool changed = false;
+    for (std::size_t at = 0; at < inputs * sides && !changed; ++at) {
         float& weight = own[at / sides * rows + at % sides];
         float const right = weight;
         glm::vec3 const before = sum(at % sides);
         weight = std::bit_cast<float>(std::bit_cast<std::uint32_t>(right) ^ 1u);
-        if (right != 0 && sum(at % sides) != before) break;
-        weight = right;
+        changed = right != 0 && sum(at % sides) != before;
+        if (!changed) weight = right;
     }
+    if (!changed) return {};
     first = std::uint32_t(out.weights.size());
     out.weights.insert(out.weights.end(), own.begin(), own.end());
     return out;
@@ -252,6 +264,19 @@ public:
     }
     std::vector<PatchCount> patch_counts() const override { return right_.patch_counts(); }
     std::vector<std::string> warnings() const override { return right_.warnings(); }
+
+    /// Whether a draw or a table has the mistake.
+    bool planted(CommandList const& list) const
+    {
+        if (mistake_.kind == Mistake::Weights) return tables_.has_value();
+        bool found = false;
+        list.for_each_surface_draw([&](Draw const& d) {
+            found = found ||
+                    (mistake_.kind != Mistake::Factors && mistake_.kind != Mistake::Fold) ||
+                    patch_of(d.patches);
+        });
+        return found;
+    }
 
 private:
     void plant(Draw& d) const
@@ -314,7 +339,12 @@ std::unique_ptr<PatchMesh> with_mistake(PatchMesh const& patches, PlantedMistake
         throw Error("the mistake '" + std::string(name_of(mistake.kind)) +
                     "' is the tessellator's, which the Direct3D 10 path does not have");
     auto out = std::make_unique<MistakenPatches>(patches, mistake);
-    (void)out->commands(surface_settings(frame)); // throws where a draw has no place for it
+    // Throws where a draw has no place for it.
+    CommandList const list = out->commands(surface_settings(frame));
+    if (!out->planted(list))
+        throw Error("the mistake '" + std::string(name_of(mistake.kind)) +
+                    "' has no place in the patches of face " + std::to_string(mistake.face + 1) +
+                    ": none is drawn, or the change drowns in rounding");
     return out;
 }
 

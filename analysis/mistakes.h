@@ -38,14 +38,15 @@ struct PlantedMistake {
     std::uint32_t face = 0; ///< of the file's mesh: where one patch has it, the face's first one
 };
 
-/// A mistake in the first face whose edges all have another face beyond.
+/// A mistake in the first face that is drawn whose edges all have another such face beyond; where
+/// there is none, in the first that is drawn.
 PlantedMistake plant_mistake(RefinedMesh const& mesh, Mistake kind);
 
 /// The patches with a mistake; they refer to `patches`. Mistakes of edges are those of patches
 /// whose domain shader is a WatertightPatch over cubics p, e+, e-.
 ///
 /// \param frame  that they will be drawn with
-/// Throws Error where the mistake cannot be planted.
+/// Throws Error where the mistake cannot be planted, and where nothing would have it.
 std::unique_ptr<PatchMesh> with_mistake(PatchMesh const& patches, PlantedMistake const& mistake,
                                         FrameSettings const& frame);
 

@@ -1,18 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/watertight.h"
 
-#include "pipeline/mesh/patch_place.h"
-#include "shaders_cpp/domain_edges.h"
+#include "analysis/shared_edges.h"
 #include "shaders_cpp/pixel/id_view.h"
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
 #include <algorithm>
-#include <bit>
 #include <cstdio>
-#include <map>
-#include <unordered_map>
 
 namespace tessemu {
 
@@ -22,51 +15,6 @@ std::string_view name_of(Verdict verdict)
 }
 
 namespace {
-
-constexpr std::size_t kPosition = 0, kNormal = 3, kDisplaced = 6;
-
-struct MeshPointHash {
-    std::size_t operator()(MeshPoint const& p) const
-    {
-        return ((std::size_t(p.a) * 0x9e3779b97f4a7c15u) ^ (std::size_t(p.b) << 20) ^
-                (std::size_t(p.s) << 40) ^ p.t ^ (std::size_t(p.kind) << 62)) *
-               0xbf58476d1ce4e5b9u;
-    }
-};
-struct Seen {
-    std::uint32_t face, patch;
-    std::array<std::uint32_t, 9> bits; ///< smooth position, normal, displaced position
-    int patches = 1;                   ///< that have the point on their outline
-};
-
-glm::vec3 place_of(Seen const& s)
-{
-    glm::vec3 p;
-    for (int k = 0; k < 3; ++k) p[k] = std::bit_cast<float>(s.bits[kDisplaced + std::size_t(k)]);
-    return p;
-}
-
-// Points on the outline of a patch's triangles. With fractional_odd spacing and an inside factor of
-// 1, points of inner rings lie on the patch's edges too (V18); those are inside the triangulation.
-struct Outline {
-    std::vector<char> on;
-    std::vector<std::uint32_t> segments; ///< pairs of points
-};
-Outline outline_of(TessellatedPatch const& t)
-{
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> triangles;
-    for (std::size_t i = 0; i + 2 < t.indices.size(); i += 3)
-        for (std::size_t k = 0; k < 3; ++k)
-            ++triangles[std::minmax(t.indices[i + k], t.indices[i + (k + 1) % 3])];
-    Outline out;
-    out.on.assign(t.points(), 0);
-    for (auto const& [edge, n] : triangles)
-        if (n == 1) {
-            out.on[edge.first] = out.on[edge.second] = 1;
-            out.segments.insert(out.segments.end(), {edge.first, edge.second});
-        }
-    return out;
-}
 
 // Distance of two floats in units in the last place; large where they differ in sign.
 std::uint64_t ulp_distance(std::uint32_t a, std::uint32_t b)
@@ -97,133 +45,6 @@ void set_place(CrackSite& site, MeshPoint const& p, std::uint32_t face, std::uin
                 std::to_string(other + 1) + ", " + in_words(p);
 }
 
-// The whole surface, and what meets at its shared edges.
-class Surface {
-public:
-    Surface(PatchMesh const& patches, FrameSettings const& frame, bool keep_triangles,
-            ThreadPool const& threads)
-        : mesh_(patches.mesh().base())
-    {
-        visit_surface(patches, frame, threads,
-                      [&](SurfacePatch const& patch) { add(patch, keep_triangles); });
-    }
-
-    using Points = std::unordered_map<MeshPoint, std::vector<Seen>, MeshPointHash>;
-    Points const& points() const { return points_; }
-    /// A patch's edge on a line; a point of a patch on a line.
-    struct Interval {
-        std::uint32_t low, high, patch;
-    };
-    struct OnLine {
-        std::uint32_t t, patch;
-        MeshPoint point;
-    };
-    struct Line {
-        std::vector<Interval> intervals;
-        std::vector<OnLine> points;
-    };
-    std::map<MeshLine, Line> const& lines() const { return lines_; }
-    std::uint32_t face_of_patch(std::uint32_t patch) const { return face_of_patch_[patch]; }
-
-    /// Pieces of lines that one patch alone has.
-    std::size_t open_edges() const
-    {
-        std::size_t open = 0;
-        for (auto const& [name, line] : lines_) {
-            std::vector<std::uint32_t> ends;
-            for (Interval const& i : line.intervals) ends.insert(ends.end(), {i.low, i.high});
-            std::sort(ends.begin(), ends.end());
-            ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-            for (std::size_t k = 0; k + 1 < ends.size(); ++k)
-                open += std::count_if(line.intervals.begin(), line.intervals.end(),
-                                      [&](Interval const& i) {
-                                          return i.low <= ends[k] && i.high >= ends[k + 1];
-                                      }) == 1;
-        }
-        return open;
-    }
-    RayMesh const& rays() const { return rays_; }
-    std::vector<std::uint32_t> const& face_of_triangle() const { return face_of_triangle_; }
-    std::vector<std::uint32_t> const& face_of_target() const { return face_of_target_; }
-
-private:
-    void add(SurfacePatch const& patch, bool keep_triangles)
-    {
-        PatchPlace const& place = patch.place();
-        auto const number = std::uint32_t(face_of_patch_.size());
-        face_of_patch_.push_back(place.face);
-        int const n = place.sides;
-        MeshInterval edge[4];
-        for (int k = 0; k < n; ++k) {
-            edge[k] = mesh_interval(mesh_, place, k);
-            lines_[edge[k].line].intervals.push_back(
-                {std::min(edge[k].from, edge[k].to), std::max(edge[k].from, edge[k].to), number});
-        }
-        TessellatedPatch const& tess = patch.domain().patch;
-        Outline& outline = outlines_[tess.indices];
-        if (outline.on.empty()) outline = outline_of(tess);
-        std::size_t const first_point = rays_.positions.size();
-        if (keep_triangles) {
-            auto const first = std::uint32_t(first_point);
-            for (std::size_t i = 0; i < tess.points(); ++i)
-                rays_.positions.push_back(patch.vertex(i).position);
-            rays_.control.insert(rays_.control.end(),
-                                 rays_.positions.begin() + std::ptrdiff_t(first),
-                                 rays_.positions.end());
-            for (std::uint32_t i : tess.indices) rays_.triangles.push_back(first + i);
-            face_of_triangle_.insert(face_of_triangle_.end(), tess.indices.size() / 3, place.face);
-            for (std::uint32_t i : outline.segments) rays_.targets.push_back(first + i);
-            face_of_target_.insert(face_of_target_.end(), outline.segments.size() / 2, place.face);
-        }
-        for (std::size_t i = 0; i < tess.points(); ++i) {
-            if (!outline.on[i]) continue;
-            float const u = patch.domain().u[i], v = patch.domain().v[i];
-            DomainEdges<4, float> const at = domain_edges<float>(n, u, v, 1 - u - v, 1 - u, 1 - v);
-            MeshPoint const point = mesh_point(mesh_, place, tess.u[i], tess.v[i]);
-            bool on_edge = false;
-            for (int k = 0; k < n; ++k) {
-                if (!at.on[k]) continue;
-                on_edge = true;
-                // Exact: a multiple of 2^-16.
-                lines_[edge[k].line].points.push_back(
-                    {edge[k].at(std::uint32_t(at.t[k] * 65536)), number, point});
-            }
-            if (!on_edge) continue;
-            SurfaceVertex const vertex = patch.vertex(i);
-            Seen seen{place.face, number, {}, 1};
-            for (int c = 0; c < 3; ++c) {
-                auto const bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
-                seen.bits[kPosition + std::size_t(c)] = bits(vertex.smooth[c]);
-                seen.bits[kNormal + std::size_t(c)] = bits(vertex.normal[c]);
-                seen.bits[kDisplaced + std::size_t(c)] = bits(vertex.position[c]);
-            }
-            glm::vec3 const first = record(point, seen);
-            if (keep_triangles) rays_.control[first_point + i] = first;
-        }
-    }
-
-    // Patches whose values are the same share an entry. Gives the point as the first patch has it.
-    glm::vec3 record(MeshPoint const& point, Seen const& seen)
-    {
-        std::vector<Seen>& all = points_[point];
-        auto const same = std::find_if(all.begin(), all.end(),
-                                       [&](Seen const& s) { return s.bits == seen.bits; });
-        if (same != all.end())
-            ++same->patches;
-        else
-            all.push_back(seen);
-        return place_of(all.front());
-    }
-
-    ControlMesh const& mesh_;
-    Points points_;
-    std::map<MeshLine, Line> lines_;
-    std::vector<std::uint32_t> face_of_patch_;
-    std::map<std::vector<std::uint32_t>, Outline> outlines_;
-    RayMesh rays_;
-    std::vector<std::uint32_t> face_of_triangle_, face_of_target_;
-};
-
 class Checker {
 public:
     Checker(PatchMesh const& patches, WatertightSettings const& settings, ThreadPool const& threads)
@@ -247,8 +68,8 @@ public:
         };
         if (s_.progress) s_.progress(1, 7);
         add(topology());
-        add(equal_bits("position", kPosition));
-        add(equal_bits("normal", kNormal));
+        add(equal_bits("position", SeenPoint::kPosition));
+        add(equal_bits("normal", SeenPoint::kNormal));
         add(displaced());
         add(coverage());
         add(raycast());
@@ -268,14 +89,14 @@ private:
     {
         CheckedVerdict v{"topology", Verdict::Pass, "", 0, 0, {}};
         for (auto const& [name, line] : surface_.lines()) {
-            std::vector<Surface::OnLine> at = line.points;
+            std::vector<SharedEdges::OnLine> at = line.points;
             std::stable_sort(at.begin(), at.end(), [](auto const& x, auto const& y) {
                 return std::pair(x.t, x.patch) < std::pair(y.t, y.patch);
             });
             for (std::size_t i = 0, end = 0; i < at.size(); i = end) {
                 while (end < at.size() && at[end].t == at[i].t) ++end;
                 std::vector<std::uint32_t> inside; // patches whose edge has the point inside
-                for (Surface::Interval const& interval : line.intervals)
+                for (SharedEdges::Interval const& interval : line.intervals)
                     if (interval.low < at[i].t && at[i].t < interval.high)
                         inside.push_back(interval.patch);
                 if (inside.empty()) continue; // where edges end
@@ -290,7 +111,7 @@ private:
                     CrackSite site;
                     set_place(site, at[i].point, surface_.face_of_patch(at[i].patch),
                               surface_.face_of_patch(patch));
-                    site.place = place_of(surface_.points().at(at[i].point)[0]);
+                    site.place = surface_.points().at(at[i].point)[0].displaced();
                     site.text += ": only the first has the point";
                     add(v, site);
                 }
@@ -303,9 +124,9 @@ private:
     {
         CheckedVerdict v{name, Verdict::Pass, "", 0, 0, {}};
         for (MeshPoint const* p : order_) {
-            std::vector<Seen> const& seen = surface_.points().at(*p);
+            std::vector<SeenPoint> const& seen = surface_.points().at(*p);
             int patches = 0;
-            for (Seen const& s : seen) patches += s.patches;
+            for (SeenPoint const& s : seen) patches += s.patches;
             if (patches < 2) continue;
             ++v.checked;
             for (std::size_t i = 1; i < seen.size(); ++i) {
@@ -317,7 +138,7 @@ private:
                 site.component = int(c - first);
                 site.bits[0] = seen[0].bits[c], site.bits[1] = seen[i].bits[c];
                 site.ulp = ulp_distance(site.bits[0], site.bits[1]);
-                site.place = place_of(seen[0]);
+                site.place = seen[0].displaced();
                 site.text += std::string(": ") + "xyz"[site.component] + " is " +
                              hexadecimal(site.bits[0]) + " and " + hexadecimal(site.bits[1]) +
                              ", " + std::to_string(site.ulp) + " ulp apart";
@@ -330,7 +151,7 @@ private:
 
     CheckedVerdict displaced() const
     {
-        if (s_.frame.displacement) return equal_bits("displaced", kDisplaced);
+        if (s_.frame.displacement) return equal_bits("displaced", SeenPoint::kDisplaced);
         return {"displaced", Verdict::Skipped, "the surface is not displaced", 0, 0, {}};
     }
 
@@ -474,7 +295,7 @@ private:
     PatchMesh const& patches_;
     WatertightSettings const& s_;
     ThreadPool const& threads_;
-    Surface surface_;
+    SharedEdges surface_;
     std::size_t open_edges_;
     std::vector<MeshPoint const*> order_;
 };

@@ -99,8 +99,8 @@ int run(CheckRequest const& o)
     std::vector<VerdictRow> rows;
     for (CheckedVerdict const& v : verdicts) rows.push_back(row_of(v));
     if (!o.output.empty()) write_image(draw_cracks(patches, s, verdicts, threads), o.output);
-    if (!o.run.json.empty()) write_result(o.run.json, check_report(job.header, rows));
-    if (o.run.json != "-") fmt::print("{}", check_table(rows, 3));
+    write_result(
+        o.run.json, [&] { return check_report(job.header, rows); }, check_table(rows, 3));
     return all_hold(verdicts) ? 0 : 1;
 }
 

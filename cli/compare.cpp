@@ -34,8 +34,9 @@ int run(CompareRequest const& o)
         error_row("normal", "closest point, scheme to limit", "radians", c.normal_to_limit),
         error_row("normal", "closest point, limit to scheme", "radians", c.normal_from_limit),
         error_row("normal", "equal parameter", "radians", c.equal_normal)};
-    if (!o.run.json.empty()) write_result(o.run.json, compare_report(job.header, c.diagonal, rows));
-    if (o.run.json != "-") fmt::print("{}", compare_table(rows));
+    write_result(
+        o.run.json, [&] { return compare_report(job.header, c.diagonal, rows); },
+        compare_table(rows));
     return 0;
 }
 

@@ -64,8 +64,8 @@ int run(CostRequest o)
     }
     summary.sources.assign(gpu.sources.begin(), gpu.sources.end());
     if (!o.output.empty()) write_roofline(roofline, o.output);
-    if (!o.run.json.empty()) write_result(o.run.json, cost_report(job.header, summary));
-    if (o.run.json != "-") fmt::print("{}", cost_table(summary));
+    write_result(
+        o.run.json, [&] { return cost_report(job.header, summary); }, cost_table(summary));
     return 0;
 }
 

@@ -38,8 +38,8 @@ int run(DiffRequest const& o)
     };
     ReportHeader const header{
         "diff", {{"tolerance", o.tolerance}}, {input(o.a, a), input(o.b, b)}, {}, {}};
-    if (!o.json.empty()) write_result(o.json, diff_report(header, values));
-    if (o.json != "-") fmt::print("{}", diff_table(values, o.all));
+    write_result(
+        o.json, [&] { return diff_report(header, values); }, diff_table(values, o.all));
     return std::any_of(values.begin(), values.end(), [](auto const& v) { return v.differs; });
 }
 

@@ -124,8 +124,9 @@ int run_error_view(DrawRequest const& o, Job& job)
              {{&view.position, scheme + ": position"}, {&view.normal, scheme + ": normal"}},
              {{"distance / diagonal", position}, {"angle, radians", normal}}},
             o.output);
-    if (!o.run.json.empty()) write_result(o.run.json, compare_report(job.header, e.diagonal, rows));
-    if (o.run.json != "-") fmt::print("{}", compare_table(rows));
+    write_result(
+        o.run.json, [&] { return compare_report(job.header, e.diagonal, rows); },
+        compare_table(rows));
     return 0;
 }
 
@@ -176,13 +177,15 @@ int run(DrawRequest const& o)
     bar.clear();
     add_run(job.header, job, threads, clock.seconds());
     if (!sequence.empty()) {
-        if (!o.run.json.empty()) write_result(o.run.json, sequence_report(job.header, sequence));
-        if (o.run.json != "-") fmt::print("{}", sequence_table(sequence));
+        write_result(
+            o.run.json, [&] { return sequence_report(job.header, sequence); },
+            sequence_table(sequence));
         return 0;
     }
     if (!o.output.empty()) write_image(frame.color, o.output);
-    if (!o.run.json.empty()) write_result(o.run.json, draw_report(job.header, frame));
-    if (o.run.json != "-") fmt::print("{}", counters_table(frame.statistics));
+    write_result(
+        o.run.json, [&] { return draw_report(job.header, frame); },
+        counters_table(frame.statistics));
     return 0;
 }
 

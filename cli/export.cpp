@@ -36,11 +36,10 @@ int run(ExportRequest const& o)
     bar.clear();
     writer.finish();
     add_run(job.header, job, threads, clock.seconds());
-    if (!o.run.json.empty())
-        write_result(o.run.json, export_report(job.header, statistics, writer));
-    if (o.run.json != "-")
-        fmt::print("{}: {} vertices, {} triangles\n", o.output, writer.vertices(),
-                   writer.triangles());
+    write_result(
+        o.run.json, [&] { return export_report(job.header, statistics, writer); },
+        fmt::format("{}: {} vertices, {} triangles\n", o.output, writer.vertices(),
+                    writer.triangles()));
     return 0;
 }
 

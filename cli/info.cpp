@@ -43,8 +43,9 @@ int run(InfoRequest const& o)
     }
     print_warnings(more);
     header.warnings.insert(header.warnings.end(), more.begin(), more.end());
-    if (!o.json.empty()) write_result(o.json, info_report(header, summary, patches));
-    if (o.json != "-") fmt::print("{}", info_table(summary, patches));
+    write_result(
+        o.json, [&] { return info_report(header, summary, patches); },
+        info_table(summary, patches));
     return 0;
 }
 

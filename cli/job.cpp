@@ -39,12 +39,17 @@ void print_warnings(std::vector<std::string> const& warnings)
     for (std::string const& w : warnings) fmt::print(stderr, "warning: {}\n", w);
 }
 
-void write_result(std::string const& path, std::string const& json)
+void write_text(std::string const& path, std::string const& text)
 {
     if (path == "-")
-        fmt::print("{}", json);
-    else if (!path.empty())
-        write_file(path, json);
+        fmt::print("{}", text);
+    else
+        write_file(path, text);
+}
+
+void print_table(std::string const& json_path, std::string const& table)
+{
+    if (json_path != "-") fmt::print("{}", table);
 }
 
 SchemeOnMesh build(Model model, ModelRequest const& o)

@@ -38,8 +38,18 @@ private:
 };
 
 void print_warnings(std::vector<std::string> const& warnings);
-/// Writes a result to a file, or prints it for "-"; nothing for an empty path.
-void write_result(std::string const& path, std::string const& json);
+/// Writes text to a file, or prints it for "-".
+void write_text(std::string const& path, std::string const& text);
+/// Prints a table, unless JSON is printed.
+void print_table(std::string const& json_path, std::string const& table);
+/// A result as JSON to its path, if there is one, and as a table to the reader.
+/// \param json  makes it; hashes take their time
+template <class Json>
+void write_result(std::string const& path, Json&& json, std::string const& table)
+{
+    if (!path.empty()) write_text(path, json());
+    print_table(path, table);
+}
 
 struct FramePose {
     double phase = 0;

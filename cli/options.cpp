@@ -9,14 +9,6 @@
 
 namespace tessemu {
 
-std::string in_words(std::vector<std::string> const& words)
-{
-    std::string out;
-    for (std::size_t i = 0; i < words.size(); ++i)
-        out += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
-    return out;
-}
-
 void refuse(std::string const& text, std::string const& option, std::string const& allowed)
 {
     throw Error(option + " is '" + text + "', it must be " + allowed);

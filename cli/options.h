@@ -109,8 +109,6 @@ std::string name_of(AdaptiveFactors const& factors);
 std::string name_of(DisplaceRequest::Heights const& heights); ///< an image without its folder
 std::string name_of(AnimateRequest::Motion motion);
 
-/// "a, b or c"
-std::string in_words(std::vector<std::string> const& words);
 [[noreturn]] void refuse(std::string const& text, std::string const& option,
                          std::string const& allowed);
 

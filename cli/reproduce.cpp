@@ -65,8 +65,9 @@ void show(PaperTable const& table, ReportHeader const& header, std::string const
 {
     std::vector<PaperRow> rows;
     for (PaperCell const& c : table.cells) rows.push_back({c.row, c.column, c.paper, c.ours});
-    if (!json.empty()) write_result(json, paper_report(header, table.title, rows, table.remarks));
-    if (json != "-") fmt::print("{}", paper_table(table.title, rows, table.remarks));
+    write_result(
+        json, [&] { return paper_report(header, table.title, rows, table.remarks); },
+        paper_table(table.title, rows, table.remarks));
 }
 
 int run(ReproduceRequest const& o)

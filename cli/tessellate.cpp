@@ -31,7 +31,7 @@ int run_batch(TessellateRequest const& o)
         TessellatorCase const c = parse_tessellator_case(row, o.batch, ++line);
         out += tessellator_answer(run_tessellator_case(c)) + "\n";
     }
-    write_result(o.output.empty() ? "-" : o.output, out);
+    write_text(o.output.empty() ? "-" : o.output, out);
     return 0;
 }
 
@@ -52,8 +52,8 @@ int run(TessellateRequest const& o)
                               {},
                               {},
                               {}};
-    write_result(o.output.empty() ? "-" : o.output,
-                 tessellate_report(header, c, run_tessellator_case(c)));
+    write_text(o.output.empty() ? "-" : o.output,
+               tessellate_report(header, c, run_tessellator_case(c)));
     return 0;
 }
 

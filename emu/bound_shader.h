@@ -36,6 +36,23 @@ private:
     SiteState sites_;
 };
 
+/// What every stage's program is; a stage's interface adds its functions.
+class ShaderProgram {
+public:
+    virtual ~ShaderProgram() = default;
+    /// Buffers and textures that it reads, and writes in a compute shader.
+    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
+};
+
+/// A program that was compiled from a shader.
+template <class Interface, class Shader> class CompiledProgram : public Interface {
+public:
+    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const final
+    {
+        return resources_of(binding.as<Shader>());
+    }
+};
+
 /// A program and its values. Copies share both.
 ///
 /// \tparam Program  a stage's interface: its functions that depend on values take a ShaderBinding
@@ -52,6 +69,7 @@ public:
     explicit operator bool() const { return program_ != nullptr; }
     friend bool operator==(BoundShader const& s, std::nullptr_t) { return !s.program_; }
     Program const* operator->() const { return program_.get(); }
+    Program const& program() const { return *program_; }
     ShaderBinding const& binding() const { return binding_; }
     SiteState const& sites() const { return binding_.sites(); }
 

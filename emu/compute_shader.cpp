@@ -28,7 +28,7 @@ void check(ComputeProgram const& program, std::array<std::uint32_t, 3> const& gr
 DrawStatistics dispatch(ComputeShader const& shader, std::array<std::uint32_t, 3> groups,
                         ThreadPool const& threads)
 {
-    ComputeProgram const& program = *shader.operator->();
+    ComputeProgram const& program = shader.program();
     check(program, groups);
     StageBuffers const buffers(shader.resources());
     std::uint64_t const all = std::uint64_t(groups[0]) * groups[1] * groups[2];

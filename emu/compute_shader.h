@@ -192,20 +192,19 @@ private:
     std::uint64_t phase_ = 0, loads_ = 0, stores_ = 0, out_of_range_ = 0;
 };
 
-class ComputeProgram {
+class ComputeProgram : public ShaderProgram {
 public:
-    virtual ~ComputeProgram() = default;
     virtual std::array<int, 3> threads() const = 0;
     virtual int shared_floats() const = 0;
     virtual bool ordered() const = 0;
-    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
     /// Runs groups first to first + count - 1 of a dispatch, x fastest.
     virtual void run(ShaderBinding const& binding, std::array<std::uint32_t, 3> const& groups,
                      std::uint64_t first, std::uint64_t count, StageCounters& counters,
                      StageBuffers const& buffers) const = 0;
 };
 
-template <class Shader, class T> class ComputeProgramOn final : public ComputeProgram {
+template <class Shader, class T>
+class ComputeProgramOn final : public CompiledProgram<ComputeProgram, Shader> {
 public:
     std::array<int, 3> threads() const override { return Shader::kThreads; }
     int shared_floats() const override
@@ -217,10 +216,6 @@ public:
     {
         if constexpr (requires { Shader::kOrdered; }) return Shader::kOrdered;
         return false;
-    }
-    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
-    {
-        return resources_of(binding.as<Shader>());
     }
 
     void run(ShaderBinding const& binding, std::array<std::uint32_t, 3> const& groups,

@@ -13,8 +13,7 @@ namespace tessemu {
 /// A tessellated patch with its domain points as floats, ready for the domain shader.
 struct DomainPoints {
     TessellatedPatch patch;
-    std::vector<float> u,
-        v; ///< exact; padded by a whole group of lanes that repeats the last point
+    std::vector<float> u, v; ///< exact; padded by a whole group of lanes, the last point again
     /// Of triangle output: the indices by corner, padded to a whole group by degenerate triangles.
     std::array<std::vector<std::uint32_t>, 3> corner;
 

@@ -59,20 +59,17 @@ struct DomainBatch {
 };
 
 /// The end of a domain shader.
-class DomainEpilogProgram {
+class DomainEpilogProgram : public ShaderProgram {
 public:
-    virtual ~DomainEpilogProgram() = default;
     virtual int input_floats() const = 0;
     virtual OutputLayout output() const = 0;
-    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
     /// Points `first` to `first + count - 1` of a batch; `first` is a multiple of the lanes.
     virtual void run(ShaderBinding const& binding, DomainBatch const& batch, std::size_t first,
                      std::size_t count) const = 0;
 };
 
-class DomainProgram {
+class DomainProgram : public ShaderProgram {
 public:
-    virtual ~DomainProgram() = default;
     virtual TessellatorDomain domain() const = 0;
     /// That the shader type declares; 0: as many as the draw's hull shader puts out.
     virtual int control_points() const = 0;
@@ -80,7 +77,6 @@ public:
     virtual int patch_constant_floats() const = 0;
     virtual OutputLayout output() const = 0;
     int output_floats() const { return output().floats; }
-    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
     /// Runs a patch, inside a StageScope that the caller holds open over many patches.
     virtual void run(ShaderBinding const& binding, DomainBatch const& batch,
                      StageCounters& counters) const = 0;
@@ -104,7 +100,8 @@ DomainInput<T> domain_input(DomainBatch const& b, std::size_t first)
 }
 } // namespace detail
 
-template <class Shader, class T> class DomainProgramOn final : public DomainProgram {
+template <class Shader, class T>
+class DomainProgramOn final : public CompiledProgram<DomainProgram, Shader> {
     static constexpr int N = lanes_of<T>;
     using Point = typename Shader::template ControlPoint<T>;
     using Constant = typename Shader::template PatchConstant<T>;
@@ -121,10 +118,6 @@ public:
     int control_point_floats() const override { return scalar_count<Point>(); }
     int patch_constant_floats() const override { return scalar_count<Constant>(); }
     OutputLayout output() const override { return output_layout<Output>(); }
-    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
-    {
-        return resources_of(binding.as<Shader>());
-    }
 
     void run(ShaderBinding const& binding, DomainBatch const& b,
              StageCounters& counters) const override
@@ -181,7 +174,8 @@ DomainShader bind_domain_shader(Shader const& shader, Machine const& machine)
     return bind_shader<DomainProgramOn, DomainProgram>(shader, machine);
 }
 
-template <class Shader, class T> class DomainEpilogProgramOn final : public DomainEpilogProgram {
+template <class Shader, class T>
+class DomainEpilogProgramOn final : public CompiledProgram<DomainEpilogProgram, Shader> {
     static constexpr std::size_t N = lanes_of<T>;
     using Input = typename Shader::template Input<T>;
     using Output = typename Shader::template Output<T>;
@@ -189,10 +183,6 @@ template <class Shader, class T> class DomainEpilogProgramOn final : public Doma
 public:
     int input_floats() const override { return scalar_count<Input>(); }
     OutputLayout output() const override { return output_layout<Output>(); }
-    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
-    {
-        return resources_of(binding.as<Shader>());
-    }
 
     void run(ShaderBinding const& binding, DomainBatch const& b, std::size_t begin,
              std::size_t count) const override

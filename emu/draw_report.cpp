@@ -29,7 +29,7 @@ struct Report {
             add_fetch(ia, "indices", ResourceKind::Index, read, d.primitives.indices_read,
                       d.primitives.index_bytes);
         }
-        VertexProgram const& vs = *d.pipeline.vertex_shader.operator->();
+        VertexProgram const& vs = d.pipeline.vertex_shader.program();
         StageStatistics& v =
             add_stage("vertex_shader", d.counters.vertex.invocations, d.counters.vertex);
         add_fetch(v, "vertices", ResourceKind::Vertex, d.counters.vertex.input_fetches,
@@ -39,7 +39,7 @@ struct Report {
             d.counters.vertex.invocations * std::uint64_t(vs.output_floats()) * sizeof(float);
         if (d.pipeline.hull_shader) report_tessellation();
         if (d.pipeline.geometry_shader) {
-            GeometryProgram const& gs = *d.pipeline.geometry_shader.operator->();
+            GeometryProgram const& gs = d.pipeline.geometry_shader.program();
             p.GSInvocations = d.counters.geometry.invocations;
             StageStatistics& g =
                 add_stage("geometry_shader", d.counters.geometry.invocations, d.counters.geometry);
@@ -62,7 +62,7 @@ struct Report {
     void report_tessellation()
     {
         PipelineStatistics& p = out.pipeline;
-        HullProgram const& hs = *d.pipeline.hull_shader.operator->();
+        HullProgram const& hs = d.pipeline.hull_shader.program();
         auto const points = std::uint64_t(d.pipeline.hull_shader.control_points()),
                    constants = std::uint64_t(d.pipeline.hull_shader.patch_constants());
         p.HSInvocations = d.counters.hull.invocations;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace tessemu {
 
@@ -25,6 +26,15 @@ struct LimitError : Error {
     }
     std::uint64_t value, limit;
 };
+
+/// "a, b or c": what is allowed
+inline std::string in_words(std::vector<std::string> const& words)
+{
+    std::string out;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        out += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+    return out;
+}
 
 /// A file cannot be read or holds something that is not valid.
 struct FormatError : Error {

@@ -139,9 +139,8 @@ struct GeometryResult {
     std::vector<Primitive> primitives;
 };
 
-class GeometryProgram {
+class GeometryProgram : public ShaderProgram {
 public:
-    virtual ~GeometryProgram() = default;
     virtual PrimitiveTopology input_topology() const = 0;
     virtual int input_vertices() const = 0; ///< of one primitive
     virtual GeometryOutput output_topology() const = 0;
@@ -150,14 +149,14 @@ public:
     virtual int input_floats() const = 0;
     virtual int input_fetch_floats() const { return input_floats(); } ///< of one fetch
     virtual OutputLayout output() const = 0;
-    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
     virtual void run(ShaderBinding const& binding, GeometryBatch const& batch,
                      GeometryResult& result, StageCounters& counters,
                      StageBuffers const& buffers) const = 0;
     int vertices_per_output() const { return 1 + int(output_topology()); }
 };
 
-template <class Shader, class T> class GeometryProgramOn final : public GeometryProgram {
+template <class Shader, class T>
+class GeometryProgramOn final : public CompiledProgram<GeometryProgram, Shader> {
     static constexpr int N = lanes_of<T>;
     using Input = typename Shader::template Input<T>;
     using Output = typename Shader::template Output<T>;
@@ -184,10 +183,6 @@ public:
     int instances() const override { return instance_count(); }
     int input_floats() const override { return scalar_count<Input>(); }
     OutputLayout output() const override { return output_layout<Output>(); }
-    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
-    {
-        return resources_of(binding.as<Shader>());
-    }
 
     void run(ShaderBinding const& binding, GeometryBatch const& b, GeometryResult& result,
              StageCounters& counters, StageBuffers const& buffers) const override

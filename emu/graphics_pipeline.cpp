@@ -39,8 +39,8 @@ GraphicsPipeline::GraphicsPipeline(GraphicsPipelineDesc desc) : desc_(std::move(
 
     int shaded = d.vertex_shader->output_floats();
     if (d.hull_shader) {
-        HullProgram const& hs = *d.hull_shader.operator->();
-        DomainProgram const& ds = *d.domain_shader.operator->();
+        HullProgram const& hs = d.hull_shader.program();
+        DomainProgram const& ds = d.domain_shader.program();
         int const points = d.hull_shader.control_points(),
                   constants = d.hull_shader.patch_constants();
         require(d.input_control_points >= 1, "a patch needs at least 1 control point");
@@ -78,7 +78,7 @@ GraphicsPipeline::GraphicsPipeline(GraphicsPipelineDesc desc) : desc_(std::move(
         shaded = d.domain_output().floats;
     }
     if (d.geometry_shader) {
-        GeometryProgram const& gs = *d.geometry_shader.operator->();
+        GeometryProgram const& gs = d.geometry_shader.program();
         require(gs.input_floats() == shaded,
                 "the geometry shader's input vertex is not the output of the stage before it");
         check_limit("geometry shader output scalars", gs.output().floats, 4 * kMaxRegisters);

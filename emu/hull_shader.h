@@ -54,9 +54,8 @@ struct HullBatch {
     TessFactors* factors;   ///< out
 };
 
-class HullProgram {
+class HullProgram : public ShaderProgram {
 public:
-    virtual ~HullProgram() = default;
     virtual TessellatorDomain domain() const = 0;
     virtual int input_floats() const = 0;       ///< of one control point
     virtual int input_fetch_floats() const = 0; ///< of one fetch, see ControlPoints
@@ -67,12 +66,12 @@ public:
     virtual int control_point_fetch_floats() const = 0;
     virtual int patch_constant_floats() const = 0;
     virtual float max_tess_factor() const = 0; ///< [maxtessfactor], 64 where not declared (R53)
-    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
     virtual void run(ShaderBinding const& binding, HullBatch const& batch, StageCounters& counters,
                      StageBuffers const& buffers) const = 0;
 };
 
-template <class Shader, class T> class HullProgramOn final : public HullProgram {
+template <class Shader, class T>
+class HullProgramOn final : public CompiledProgram<HullProgram, Shader> {
     static constexpr int N = lanes_of<T>;
     using Input = typename Shader::template Input<T>;
     using Point = typename Shader::template ControlPoint<T>;
@@ -100,10 +99,6 @@ public:
     {
         if constexpr (requires { Shader::kMaxTessFactor; }) return Shader::kMaxTessFactor;
         return tessemu::kMaxTessFactor;
-    }
-    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
-    {
-        return resources_of(binding.as<Shader>());
     }
 
     void run(ShaderBinding const& binding, HullBatch const& b, StageCounters& counters,

@@ -70,12 +70,10 @@ struct FragmentBatch {
     std::int32_t* discard; ///< out: -1 where discarded
 };
 
-class PixelProgram {
+class PixelProgram : public ShaderProgram {
 public:
-    virtual ~PixelProgram() = default;
     PixelShaderInfo const& info() const { return info_; }
     int input_floats() const { return int(info_.interpolation.size()); }
-    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
     virtual void run(ShaderBinding const& binding, FragmentBatch const& batch,
                      StageCounters& counters, StageBuffers const& buffers) const = 0;
     /// Runs one invocation on zeros.
@@ -85,7 +83,9 @@ protected:
     PixelShaderInfo info_;
 };
 
-template <class Shader, class T> class PixelProgramOn final : public PixelProgram {
+template <class Shader, class T>
+class PixelProgramOn final : public CompiledProgram<PixelProgram, Shader> {
+    using CompiledProgram<PixelProgram, Shader>::info_;
     static constexpr int N = lanes_of<T>;
     using Input = typename Shader::template Input<T>;
     using Output = std::remove_cvref_t<decltype(std::declval<Shader const&>()(
@@ -129,10 +129,6 @@ public:
         for (Interpolation i : info_.interpolation)
             if (i == Interpolation::LinearSample || i == Interpolation::LinearNoperspectiveSample)
                 info_.sample_frequency = true; // R114
-    }
-    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
-    {
-        return resources_of(binding.as<Shader>());
     }
 
     void run(ShaderBinding const& binding, FragmentBatch const& b, StageCounters& counters,

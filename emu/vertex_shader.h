@@ -33,12 +33,10 @@ struct VertexBatch {
     std::uint32_t instance;
 };
 
-class VertexProgram {
+class VertexProgram : public ShaderProgram {
 public:
-    virtual ~VertexProgram() = default;
     virtual int input_floats() const = 0;
     int output_floats() const { return output().floats; }
-    virtual std::vector<ResourceInfo> resources(ShaderBinding const& binding) const = 0;
     virtual OutputLayout output() const = 0;
     /// Runs a batch, writing `outputs[id * output_floats]`. Without `outputs` the runs are counted
     /// and their results dropped.
@@ -46,7 +44,8 @@ public:
                      StageCounters& counters, StageBuffers const& buffers) const = 0;
 };
 
-template <class Shader, class T> class VertexProgramOn final : public VertexProgram {
+template <class Shader, class T>
+class VertexProgramOn final : public CompiledProgram<VertexProgram, Shader> {
     static constexpr int N = lanes_of<T>;
     using Input = typename Shader::template Input<T>;
     using Output = typename Shader::template Output<T>;
@@ -54,10 +53,6 @@ template <class Shader, class T> class VertexProgramOn final : public VertexProg
 public:
     int input_floats() const override { return scalar_count<Input>(); }
     OutputLayout output() const override { return output_layout<Output>(); }
-    std::vector<ResourceInfo> resources(ShaderBinding const& binding) const override
-    {
-        return resources_of(binding.as<Shader>());
-    }
 
     void run(ShaderBinding const& binding, VertexBatch const& batch, float* outputs,
              StageCounters& counters, StageBuffers const& buffers) const override

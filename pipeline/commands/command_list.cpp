@@ -100,6 +100,9 @@ SurfaceVertex SurfacePatch::vertex(std::size_t i) const
                 as_vector(v.base),
                 {v.coordinates.x, v.coordinates.y}};
     }
+    if (floats_ != std::size_t(scalar_count<ShadedVertex<float>>()))
+        throw Error("the draw '" + draw_->name + "' gives " + std::to_string(floats_) +
+                    " scalars a vertex: it is no surface's");
     auto const v = load_column<ShadedVertex<float>>(patch_.outputs + i, patch_.stride);
     glm::vec3 const p(v.position.x, v.position.y, v.position.z);
     return {p, as_vector(v.normal), p};

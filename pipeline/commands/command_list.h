@@ -50,7 +50,8 @@ struct Draw {
     PatchKind kind = {};
     std::span<PatchPlace const> patches = {}; ///< by primitive id; empty: it shows none
     /// The vertices of each patch, where no tessellator makes them: of an instanced draw vertex i
-    /// of instance p is point i of patch p, of any other vertex p * points + i.
+    /// of instance p is point i of patch p, of any other vertex p * points + i. Its vertex shader
+    /// gives ShadedVertex or DisplacedVertex records, as the other draws' domain shaders do.
     std::shared_ptr<DomainPoints const> grid = {};
 
     bool shows_surface() const { return !patches.empty(); }
@@ -104,7 +105,7 @@ public:
     DomainPoints const& domain() const { return *patch_.points; }
     std::size_t points() const { return patch_.points->patch.points(); }
     std::vector<std::uint32_t> const& triangles() const { return patch_.points->patch.indices; }
-    /// Of a draw whose transform was the identity.
+    /// Of a draw whose transform was the identity. Throws Error for records of another kind.
     SurfaceVertex vertex(std::size_t i) const;
     /// The whole record that the last stage before the rasterizer wrote.
     std::vector<float> scalars(std::size_t i) const;

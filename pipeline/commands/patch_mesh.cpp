@@ -17,6 +17,11 @@ VertexSource positions_of(ControlMesh const& mesh)
     return {{&mesh.positions.data()->x, mesh.positions.size() * 3}, 3, 3};
 }
 
+SkinBuffers skin_of(Pose const& pose)
+{
+    return {{pose.skin->vertices, 0, "skin"}, {pose.bones, 1, "bones"}};
+}
+
 void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const& d,
                     SurfaceSettings const& settings)
 {

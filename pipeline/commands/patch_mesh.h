@@ -7,6 +7,7 @@
 #include "pipeline/commands/command_list.h"
 #include "pipeline/commands/surface_settings.h"
 #include "pipeline/mesh/refinement.h"
+#include "shaders_cpp/skinning.h"
 
 namespace tessemu {
 
@@ -46,6 +47,9 @@ struct VertexSource {
 };
 /// The control mesh's positions.
 VertexSource positions_of(ControlMesh const& mesh);
+
+/// A pose as shaders read it: slots 0 and 1.
+SkinBuffers skin_of(Pose const& pose);
 
 /// What a draw of patches consists of.
 struct PatchDraw {

@@ -30,9 +30,7 @@ namespace {
 VertexShader vertex_shader(SurfaceSettings const& s)
 {
     if (!s.pose) return bind_vertex_shader(NormalVertexShader{}, s.machine);
-    return bind_vertex_shader(SkinnedNormalVertexShader{{{s.pose->skin->vertices, 0, "skin"},
-                                                         {s.pose->bones, 1, "bones"}}},
-                              s.machine);
+    return bind_vertex_shader(SkinnedNormalVertexShader{skin_of(*s.pose)}, s.machine);
 }
 
 } // namespace

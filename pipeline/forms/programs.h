@@ -9,14 +9,14 @@
 
 namespace tessemu {
 
-extern template class DomainProgramOn<RegularQuadDomainShader, FastScalar>;
-extern template class DomainProgramOn<RegularCornersDomainShader, FastScalar>;
-extern template class HullProgramOn<StencilHullShader<TessellatorDomain::Quad>, FastScalar>;
-extern template class HullProgramOn<StencilHullShader<TessellatorDomain::Tri>, FastScalar>;
+/// All of them for a machine's scalar T; `instantiate` is template, or extern template.
+#define TESSEMU_FORM_PROGRAMS(instantiate, T)                                                      \
+    instantiate class DomainProgramOn<RegularQuadDomainShader, T>;                                 \
+    instantiate class DomainProgramOn<RegularCornersDomainShader, T>;                              \
+    instantiate class HullProgramOn<StencilHullShader<TessellatorDomain::Quad>, T>;                \
+    instantiate class HullProgramOn<StencilHullShader<TessellatorDomain::Tri>, T>;
 
-extern template class DomainProgramOn<RegularQuadDomainShader, CheckScalar>;
-extern template class DomainProgramOn<RegularCornersDomainShader, CheckScalar>;
-extern template class HullProgramOn<StencilHullShader<TessellatorDomain::Quad>, CheckScalar>;
-extern template class HullProgramOn<StencilHullShader<TessellatorDomain::Tri>, CheckScalar>;
+TESSEMU_FORM_PROGRAMS(extern template, FastScalar)
+TESSEMU_FORM_PROGRAMS(extern template, CheckScalar)
 
 } // namespace tessemu

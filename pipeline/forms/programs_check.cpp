@@ -3,9 +3,6 @@
 
 namespace tessemu {
 
-template class DomainProgramOn<RegularQuadDomainShader, CheckScalar>;
-template class DomainProgramOn<RegularCornersDomainShader, CheckScalar>;
-template class HullProgramOn<StencilHullShader<TessellatorDomain::Quad>, CheckScalar>;
-template class HullProgramOn<StencilHullShader<TessellatorDomain::Tri>, CheckScalar>;
+TESSEMU_FORM_PROGRAMS(template, CheckScalar)
 
 } // namespace tessemu

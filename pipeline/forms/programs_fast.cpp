@@ -3,9 +3,6 @@
 
 namespace tessemu {
 
-template class DomainProgramOn<RegularQuadDomainShader, FastScalar>;
-template class DomainProgramOn<RegularCornersDomainShader, FastScalar>;
-template class HullProgramOn<StencilHullShader<TessellatorDomain::Quad>, FastScalar>;
-template class HullProgramOn<StencilHullShader<TessellatorDomain::Tri>, FastScalar>;
+TESSEMU_FORM_PROGRAMS(template, FastScalar)
 
 } // namespace tessemu

@@ -15,9 +15,7 @@ namespace {
 VertexShader vertex_shader(SurfaceSettings const& settings)
 {
     if (!settings.pose) return bind_vertex_shader(PassThroughVertexShader{}, settings.machine);
-    return bind_vertex_shader(SkinningVertexShader{{{settings.pose->skin->vertices, 0, "skin"},
-                                                    {settings.pose->bones, 1, "bones"}}},
-                              settings.machine);
+    return bind_vertex_shader(SkinningVertexShader{skin_of(*settings.pose)}, settings.machine);
 }
 
 } // namespace

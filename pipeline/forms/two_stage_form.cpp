@@ -12,7 +12,7 @@ Dispatch skinning(ControlMesh const& mesh, std::vector<float>& moved,
                   SurfaceSettings const& settings)
 {
     SkinningComputeShader cs;
-    cs.skin = {{settings.pose->skin->vertices, 0, "skin"}, {settings.pose->bones, 1, "bones"}};
+    cs.skin = skin_of(*settings.pose);
     cs.rest = {positions_of(mesh).floats, 2, "rest_positions"};
     cs.moved = {std::span(moved).first(mesh.positions.size() * 4), 3, "moved_positions"};
     auto const groups = std::uint32_t((mesh.positions.size() + 63) / 64);
@@ -27,6 +27,12 @@ TwoStageForm::TwoStageForm(std::shared_ptr<RefinedMesh const> mesh, std::vector<
       rings_(this->mesh().topology()),
       groups_(kinds_.size())
 {
+    Topology const& topology = this->mesh().topology();
+    for (std::uint32_t v = 0; v < this->mesh().mesh().positions.size(); ++v)
+        if (!topology.ring(v).empty() && topology.valence(v) > std::uint32_t(RingLayout::kEdges))
+            throw LimitError("edges at " + this->mesh().vertex_in_words(v) +
+                                 ", by the vertex shader's output registers,",
+                             topology.valence(v), std::uint64_t(RingLayout::kEdges));
     for (double c : make_ring_angles()) angles_.push_back(float(c));
 }
 

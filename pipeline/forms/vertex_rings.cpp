@@ -17,10 +17,6 @@ VertexRings::VertexRings(Topology const& topology)
     for (std::uint32_t v = 0; v < vertices; ++v) {
         auto const ring = topology.ring(v);
         bool const boundary = !ring.empty() && topology.is_boundary(v);
-        if (topology.valence(v) > std::uint32_t(RingLayout::kEdges) && !ring.empty())
-            throw LimitError("edges at vertex " + std::to_string(v + 1) +
-                                 ", by the vertex shader's output registers,",
-                             topology.valence(v), std::uint64_t(RingLayout::kEdges));
         rings.push_back(std::uint32_t(entries.size() / 2));
         rings.push_back(std::uint32_t(ring.size()) | (boundary ? 256u : 0u));
         for (HalfEdge h : ring) {

@@ -14,8 +14,7 @@ struct VertexRings {
     std::vector<float> positions; ///< four floats a texel
     int height = 0;               ///< rows of the position texture
 
-    /// Throws LimitError for a vertex with more edges than the vertex shader's output registers
-    /// hold. Vertices without faces get an empty ring.
+    /// Of vertices with up to RingLayout::kEdges edges. Those without faces get an empty ring.
     explicit VertexRings(Topology const& topology);
 };
 

@@ -9,8 +9,11 @@ RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step, int o
       steps_(steps),
       own_steps_(own_steps)
 {
-    if (steps < 0 || steps > kMaxSteps)
-        throw LimitError("steps of subdivision", std::uint64_t(std::max(steps, 0)), kMaxSteps);
+    static_assert(kMaxSteps <= PatchPlace::kMaxLevel);
+    if (steps < 0)
+        throw Error("steps of subdivision is " + std::to_string(steps) + ", it must be 0 or more");
+    if (steps > kMaxSteps)
+        throw LimitError("steps of subdivision", std::uint64_t(steps), kMaxSteps);
     places_.reserve(base_->faces());
     for (std::uint32_t f = 0; f < base_->faces(); ++f) {
         PatchPlace p;
@@ -34,6 +37,13 @@ RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step, int o
         if (s + 1 == own_steps && own_steps < steps)
             reference_ = std::make_unique<ControlMesh const>(*mesh_);
     }
+}
+
+std::string RefinedMesh::vertex_in_words(std::uint32_t v) const
+{
+    if (v < base_->positions.size()) return "vertex " + std::to_string(v + 1);
+    std::uint32_t const face = topology().face_of(topology().ring(v)[0]);
+    return "the middle of face " + std::to_string(place(face).face + 1);
 }
 
 } // namespace tessemu

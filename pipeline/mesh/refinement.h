@@ -40,6 +40,10 @@ public:
         return own_steps_ == 0 ? *base_ : own_steps_ == steps_ ? *mesh_ : *reference_;
     }
 
+    /// A vertex of mesh() as the file's user knows it: "vertex 12", "the middle of face 3"; of new
+    /// ones those that may have more than four edges.
+    std::string vertex_in_words(std::uint32_t vertex) const;
+
     /// Of a patch on a face of mesh() whose corner 0 is the face's corner `rotation`.
     PatchPlace place(std::uint32_t face, int rotation = 0) const
     {

@@ -60,10 +60,7 @@ Parameters::Value parsed(SchemeInfo const& info, SchemeParameter const& p, std::
     std::string const what = info.name + ": " + p.name + " is '" + text + "', it must be ";
     if (!p.words.empty()) {
         if (std::find(p.words.begin(), p.words.end(), text) != p.words.end()) return text;
-        std::string words;
-        for (std::size_t i = 0; i < p.words.size(); ++i)
-            words += (i == 0 ? "" : i + 1 == p.words.size() ? " or " : ", ") + p.words[i];
-        throw Error(what + words);
+        throw Error(what + in_words(p.words));
     }
     double x = 0;
     auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), x);
@@ -183,9 +180,11 @@ void warn_of_tags(SchemeInfo const& info, ControlMesh const& mesh, std::vector<s
 SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options)
 {
     constexpr int kMost = 6;
-    if (options.subdivide < 0 || options.subdivide > kMost)
-        throw LimitError("steps of subdivision", std::uint64_t(std::max(0, options.subdivide)),
-                         kMost);
+    if (options.subdivide < 0)
+        throw Error("steps of subdivision is " + std::to_string(options.subdivide) +
+                    ", it must be 0 or more");
+    if (options.subdivide > kMost)
+        throw LimitError("steps of subdivision", std::uint64_t(options.subdivide), kMost);
     SchemeInfo const info = scheme.info();
     SchemeOnMesh out;
     out.parameters = resolve_parameters(info, options.set);

@@ -184,6 +184,23 @@ TEST(Mistakes, AreRefusedWhereTheyCannotBePlanted)
     EXPECT_NO_THROW(with_mistake(*phong.patches, {Mistake::Fold, 0}, {}));
 }
 
+// A mistake that no patch has would read as one that the checker missed.
+TEST(Mistakes, ArePlantedInAFaceThatIsDrawn)
+{
+    ControlMesh mesh = load_model("golem").mesh;
+    for (std::uint32_t f = 0; f < 12; ++f) mesh.holes.push_back(f);
+    for (char const* scheme : {"gregory-stencil", "gregory-two-stage"}) {
+        SchemeOnMesh const on = build_scheme(find_scheme(scheme), mesh);
+        for (Mistake m : {Mistake::Factors, Mistake::Fold, Mistake::Weights}) {
+            EXPECT_THROW(with_mistake(*on.patches, {m, 3}, {}), Error) << name_of(m);
+            PlantedMistake const planted = plant_mistake(*on.mesh, m);
+            EXPECT_GE(planted.face, 12u);
+            if (m == Mistake::Weights && scheme == std::string_view("gregory-two-stage")) continue;
+            EXPECT_NO_THROW(with_mistake(*on.patches, planted, {})) << name_of(m);
+        }
+    }
+}
+
 TEST(Watertight, AFailureNamesPatchesEdgeValuesAndDistance)
 {
     Case c("golem", "gregory-stencil");

@@ -170,7 +170,7 @@ Scheme const& stencils()
 TEST(Refinement, TakesZeroToSixSteps)
 {
     ControlMesh const mesh = test::prism(3);
-    for (int steps : {-1, 7, 100}) try {
+    for (int steps : {7, 100}) try {
             build_scheme(stencils(), mesh, {.subdivide = steps});
             ADD_FAILURE() << steps << " steps";
         } catch (LimitError const& e) {
@@ -180,7 +180,6 @@ TEST(Refinement, TakesZeroToSixSteps)
     SchemeOnMesh const most = build_scheme(stencils(), mesh, {.subdivide = 6});
     EXPECT_EQ(most.mesh->mesh().faces(), 18u << 10); // 2 triangles, 3 quads
     EXPECT_THROW(RefinedMesh(mesh, RefinedMesh::kMaxSteps + 1, catmull_clark_step), LimitError);
-    EXPECT_THROW(RefinedMesh(mesh, -1, catmull_clark_step), LimitError);
 }
 
 TEST(Refinement, LargeFacesGetOneStepWithAWarningUnlessOneWasAskedFor)
@@ -218,6 +217,17 @@ TEST(Refinement, TheReferenceMeshDoesNotDependOnTheStepsThatAreAskedFor)
             EXPECT_EQ(m.mesh->reference().positions, own.mesh().positions) << sides << " " << steps;
             EXPECT_EQ(m.mesh->reference().faces(), own.mesh().faces()) << sides << " " << steps;
         }
+    }
+}
+
+TEST(Refinement, NegativeStepsAreRefused)
+{
+    EXPECT_THROW(RefinedMesh(test::prism(4), -1, catmull_clark_step), Error);
+    try {
+        build_scheme(stencils(), test::prism(4), {.subdivide = -1});
+        FAIL();
+    } catch (Error const& e) {
+        EXPECT_NE(std::string(e.what()).find("-1"), std::string::npos) << e.what();
     }
 }
 

@@ -8,6 +8,7 @@
 #include "shaders_cpp/gregory/corner_hull_shader.h"
 #include "shaders_cpp/gregory/ring_vertex_shader.h"
 #include "tests/support/files.h"
+#include "tests/support/random_mesh.h"
 #include "tests/support/ring_vertices.h"
 #include "tests/support/stencil_patch.h"
 
@@ -119,6 +120,14 @@ TEST(TwoStage, TakesValencesUpTo15WhichTheStencilFormRefuses)
     } catch (LimitError const& e) {
         EXPECT_NE(std::string(e.what()).find("edges at vertex 1"), std::string::npos) << e.what();
         EXPECT_NE(std::string(e.what()).find("16"), std::string::npos) << e.what();
+    }
+    // A vertex that the file does not have: its step makes one in the middle of a large face.
+    try {
+        build_scheme(two_stage, test::prism(16));
+        FAIL();
+    } catch (LimitError const& e) {
+        EXPECT_NE(std::string(e.what()).find("edges at the middle of face 1"), std::string::npos)
+            << e.what();
     }
 }
 

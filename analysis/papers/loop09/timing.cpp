@@ -27,6 +27,11 @@ double predicted(GpuModel const& m, TimedCell const& c)
 }
 
 // Least squares of (overhead + fetches / rate + rest - seconds) / seconds over the cells but one.
+//
+// A stage's memory traffic is in `rest`, on top of its fetches, where predicted() takes the longer
+// of the two: only so is the sum linear in overhead and 1 / rate. Of table 1 no stage waits for
+// memory and both agree. Of table 2 some do: there this is near predicted()'s least squares, and not
+// at them.
 GpuModel fitted(GpuModel m, std::vector<TimedCell> const& cells, std::size_t left_out)
 {
     GpuModel rest = m;

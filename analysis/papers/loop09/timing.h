@@ -1,8 +1,9 @@
 // LOOP09's tables 1 and 2: times of ACC, Pm and Gregory patches, predicted from counters.
 //
 // Two numbers of the GPU are fitted to a table, the overhead of a frame and the rate of fetches
-// (least squares of the relative errors); everything else is counted by the emulated pipeline or
-// comes from the GPU's description. Each cell is also predicted with itself left out of the fit.
+// (least squares of the relative errors; of table 2 nearly); everything else is counted by the
+// emulated pipeline or comes from the GPU's description. Each cell is also predicted with itself
+// left out of the fit.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -9,10 +9,12 @@
 
 namespace tessemu {
 
-extern template class DomainProgramOn<AccQuadDomainShader, FastScalar>;
-extern template class HullProgramOn<AccHullShader<>, FastScalar>;
+/// All of them for a machine's scalar T; `instantiate` is template, or extern template.
+#define TESSEMU_ACC_PROGRAMS(instantiate, T)                                                       \
+    instantiate class DomainProgramOn<AccQuadDomainShader, T>;                                     \
+    instantiate class HullProgramOn<AccHullShader<>, T>;
 
-extern template class DomainProgramOn<AccQuadDomainShader, CheckScalar>;
-extern template class HullProgramOn<AccHullShader<>, CheckScalar>;
+TESSEMU_ACC_PROGRAMS(extern template, FastScalar)
+TESSEMU_ACC_PROGRAMS(extern template, CheckScalar)
 
 } // namespace tessemu

@@ -3,7 +3,6 @@
 
 namespace tessemu {
 
-template class DomainProgramOn<AccQuadDomainShader, CheckScalar>;
-template class HullProgramOn<AccHullShader<>, CheckScalar>;
+TESSEMU_ACC_PROGRAMS(template, CheckScalar)
 
 } // namespace tessemu

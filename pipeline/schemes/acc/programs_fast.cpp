@@ -3,7 +3,6 @@
 
 namespace tessemu {
 
-template class DomainProgramOn<AccQuadDomainShader, FastScalar>;
-template class HullProgramOn<AccHullShader<>, FastScalar>;
+TESSEMU_ACC_PROGRAMS(template, FastScalar)
 
 } // namespace tessemu

@@ -15,22 +15,18 @@ namespace tessemu {
 /// Of both forms.
 std::vector<SchemeParameter> gregory_parameters();
 
-extern template class DomainProgramOn<GregoryQuadDomainShader, FastScalar>;
-extern template class DomainProgramOn<GregoryTriangleDomainShader, FastScalar>;
-extern template class DomainProgramOn<GregoryQuadCornersDomainShader, FastScalar>;
-extern template class DomainProgramOn<GregoryTriangleCornersDomainShader, FastScalar>;
-extern template class HullProgramOn<CornerHullShader<TessellatorDomain::Quad, 4>, FastScalar>;
-extern template class HullProgramOn<CornerHullShader<TessellatorDomain::Quad, 5>, FastScalar>;
-extern template class HullProgramOn<CornerHullShader<TessellatorDomain::Tri, 5>, FastScalar>;
-extern template class VertexProgramOn<RingVertexShader<>, FastScalar>;
+/// All of them for a machine's scalar T; `instantiate` is template, or extern template.
+#define TESSEMU_GREGORY_PROGRAMS(instantiate, T)                                                   \
+    instantiate class DomainProgramOn<GregoryQuadDomainShader, T>;                                 \
+    instantiate class DomainProgramOn<GregoryTriangleDomainShader, T>;                             \
+    instantiate class DomainProgramOn<GregoryQuadCornersDomainShader, T>;                          \
+    instantiate class DomainProgramOn<GregoryTriangleCornersDomainShader, T>;                      \
+    instantiate class HullProgramOn<CornerHullShader<TessellatorDomain::Quad, 4>, T>;              \
+    instantiate class HullProgramOn<CornerHullShader<TessellatorDomain::Quad, 5>, T>;              \
+    instantiate class HullProgramOn<CornerHullShader<TessellatorDomain::Tri, 5>, T>;               \
+    instantiate class VertexProgramOn<RingVertexShader<>, T>;
 
-extern template class DomainProgramOn<GregoryQuadDomainShader, CheckScalar>;
-extern template class DomainProgramOn<GregoryTriangleDomainShader, CheckScalar>;
-extern template class DomainProgramOn<GregoryQuadCornersDomainShader, CheckScalar>;
-extern template class DomainProgramOn<GregoryTriangleCornersDomainShader, CheckScalar>;
-extern template class HullProgramOn<CornerHullShader<TessellatorDomain::Quad, 4>, CheckScalar>;
-extern template class HullProgramOn<CornerHullShader<TessellatorDomain::Quad, 5>, CheckScalar>;
-extern template class HullProgramOn<CornerHullShader<TessellatorDomain::Tri, 5>, CheckScalar>;
-extern template class VertexProgramOn<RingVertexShader<>, CheckScalar>;
+TESSEMU_GREGORY_PROGRAMS(extern template, FastScalar)
+TESSEMU_GREGORY_PROGRAMS(extern template, CheckScalar)
 
 } // namespace tessemu

@@ -3,13 +3,6 @@
 
 namespace tessemu {
 
-template class DomainProgramOn<GregoryQuadDomainShader, CheckScalar>;
-template class DomainProgramOn<GregoryTriangleDomainShader, CheckScalar>;
-template class DomainProgramOn<GregoryQuadCornersDomainShader, CheckScalar>;
-template class DomainProgramOn<GregoryTriangleCornersDomainShader, CheckScalar>;
-template class HullProgramOn<CornerHullShader<TessellatorDomain::Quad, 4>, CheckScalar>;
-template class HullProgramOn<CornerHullShader<TessellatorDomain::Quad, 5>, CheckScalar>;
-template class HullProgramOn<CornerHullShader<TessellatorDomain::Tri, 5>, CheckScalar>;
-template class VertexProgramOn<RingVertexShader<>, CheckScalar>;
+TESSEMU_GREGORY_PROGRAMS(template, CheckScalar)
 
 } // namespace tessemu

@@ -3,13 +3,6 @@
 
 namespace tessemu {
 
-template class DomainProgramOn<GregoryQuadDomainShader, FastScalar>;
-template class DomainProgramOn<GregoryTriangleDomainShader, FastScalar>;
-template class DomainProgramOn<GregoryQuadCornersDomainShader, FastScalar>;
-template class DomainProgramOn<GregoryTriangleCornersDomainShader, FastScalar>;
-template class HullProgramOn<CornerHullShader<TessellatorDomain::Quad, 4>, FastScalar>;
-template class HullProgramOn<CornerHullShader<TessellatorDomain::Quad, 5>, FastScalar>;
-template class HullProgramOn<CornerHullShader<TessellatorDomain::Tri, 5>, FastScalar>;
-template class VertexProgramOn<RingVertexShader<>, FastScalar>;
+TESSEMU_GREGORY_PROGRAMS(template, FastScalar)
 
 } // namespace tessemu

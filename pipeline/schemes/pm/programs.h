@@ -10,18 +10,16 @@
 
 namespace tessemu {
 
-extern template class DomainProgramOn<PmQuadDomainShader, FastScalar>;
-extern template class DomainProgramOn<PmTriangleDomainShader, FastScalar>;
-extern template class HullProgramOn<PmRegularHullShader<>, FastScalar>;
-extern template class HullProgramOn<PmHullShader<TessellatorDomain::Quad>, FastScalar>;
-extern template class HullProgramOn<PmHullShader<TessellatorDomain::Tri>, FastScalar>;
-extern template class VertexProgramOn<PmVertexShader<>, FastScalar>;
+/// All of them for a machine's scalar T; `instantiate` is template, or extern template.
+#define TESSEMU_PM_PROGRAMS(instantiate, T)                                                        \
+    instantiate class DomainProgramOn<PmQuadDomainShader, T>;                                      \
+    instantiate class DomainProgramOn<PmTriangleDomainShader, T>;                                  \
+    instantiate class HullProgramOn<PmRegularHullShader<>, T>;                                     \
+    instantiate class HullProgramOn<PmHullShader<TessellatorDomain::Quad>, T>;                     \
+    instantiate class HullProgramOn<PmHullShader<TessellatorDomain::Tri>, T>;                      \
+    instantiate class VertexProgramOn<PmVertexShader<>, T>;
 
-extern template class DomainProgramOn<PmQuadDomainShader, CheckScalar>;
-extern template class DomainProgramOn<PmTriangleDomainShader, CheckScalar>;
-extern template class HullProgramOn<PmRegularHullShader<>, CheckScalar>;
-extern template class HullProgramOn<PmHullShader<TessellatorDomain::Quad>, CheckScalar>;
-extern template class HullProgramOn<PmHullShader<TessellatorDomain::Tri>, CheckScalar>;
-extern template class VertexProgramOn<PmVertexShader<>, CheckScalar>;
+TESSEMU_PM_PROGRAMS(extern template, FastScalar)
+TESSEMU_PM_PROGRAMS(extern template, CheckScalar)
 
 } // namespace tessemu

@@ -3,11 +3,6 @@
 
 namespace tessemu {
 
-template class DomainProgramOn<PmQuadDomainShader, CheckScalar>;
-template class DomainProgramOn<PmTriangleDomainShader, CheckScalar>;
-template class HullProgramOn<PmRegularHullShader<>, CheckScalar>;
-template class HullProgramOn<PmHullShader<TessellatorDomain::Quad>, CheckScalar>;
-template class HullProgramOn<PmHullShader<TessellatorDomain::Tri>, CheckScalar>;
-template class VertexProgramOn<PmVertexShader<>, CheckScalar>;
+TESSEMU_PM_PROGRAMS(template, CheckScalar)
 
 } // namespace tessemu

@@ -3,11 +3,6 @@
 
 namespace tessemu {
 
-template class DomainProgramOn<PmQuadDomainShader, FastScalar>;
-template class DomainProgramOn<PmTriangleDomainShader, FastScalar>;
-template class HullProgramOn<PmRegularHullShader<>, FastScalar>;
-template class HullProgramOn<PmHullShader<TessellatorDomain::Quad>, FastScalar>;
-template class HullProgramOn<PmHullShader<TessellatorDomain::Tri>, FastScalar>;
-template class VertexProgramOn<PmVertexShader<>, FastScalar>;
+TESSEMU_PM_PROGRAMS(template, FastScalar)
 
 } // namespace tessemu

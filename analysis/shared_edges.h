@@ -1,0 +1,83 @@
+// A tessellated surface by the names of its points: what patches have at the edges that they share.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "analysis/ray_check.h"
+#include "pipeline/frame.h"
+
+#include <map>
+#include <unordered_map>
+
+namespace tessemu {
+
+/// A point of the surface as one patch has it, or several with the same values.
+struct SeenPoint {
+    static constexpr std::size_t kPosition = 0, kNormal = 3, kDisplaced = 6;
+    std::uint32_t face = 0, patch = 0;      ///< of the first patch
+    std::array<std::uint32_t, 9> bits = {}; ///< smooth position, normal, displaced position
+    int patches = 1;                        ///< that have the point on their outline
+
+    glm::vec3 displaced() const;
+};
+
+/// Collects the surface in one tessellation.
+/// \cost  memory for all points on patches' edges; for all triangles where they are kept
+class SharedEdges {
+public:
+    /// \param keep_triangles  for rays()
+    SharedEdges(PatchMesh const& patches, FrameSettings const& frame, bool keep_triangles,
+                ThreadPool const& threads);
+
+    /// Different values of a point, in the order of the patches.
+    struct Hash {
+        std::size_t operator()(MeshPoint const& p) const;
+    };
+    using Points = std::unordered_map<MeshPoint, std::vector<SeenPoint>, Hash>;
+    Points const& points() const { return points_; }
+
+    /// A patch's edge on a line; a point of a patch on a line.
+    struct Interval {
+        std::uint32_t low, high, patch;
+    };
+    struct OnLine {
+        std::uint32_t t, patch;
+        MeshPoint point;
+    };
+    struct Line {
+        std::vector<Interval> intervals;
+        std::vector<OnLine> points;
+    };
+    std::map<MeshLine, Line> const& lines() const { return lines_; }
+    std::uint32_t face_of_patch(std::uint32_t patch) const { return face_of_patch_[patch]; }
+    /// Pieces of lines that one patch alone has.
+    std::size_t open_edges() const;
+
+    RayMesh const& rays() const { return rays_; }
+    std::vector<std::uint32_t> const& face_of_triangle() const { return face_of_triangle_; }
+    std::vector<std::uint32_t> const& face_of_target() const { return face_of_target_; }
+
+private:
+    /// Points on the outline of a patch's triangles. With fractional_odd spacing and an inside
+    /// factor of 1, points of inner rings lie on the patch's edges too (V18); those are inside the
+    /// triangulation.
+    struct Outline {
+        std::vector<char> on;
+        std::vector<std::uint32_t> segments; ///< pairs of points
+    };
+    static Outline outline_of(TessellatedPatch const& patch);
+
+    void add(SurfacePatch const& patch, bool keep_triangles);
+    /// Gives the point as the first patch has it.
+    glm::vec3 record(MeshPoint const& point, SeenPoint const& seen);
+
+    ControlMesh const& mesh_;
+    Points points_;
+    std::map<MeshLine, Line> lines_;
+    std::vector<std::uint32_t> face_of_patch_;
+    std::map<std::vector<std::uint32_t>, Outline> outlines_; // by a pattern's indices
+    RayMesh rays_;
+    std::vector<std::uint32_t> face_of_triangle_, face_of_target_;
+};
+
+} // namespace tessemu
