@@ -140,7 +140,7 @@ private:
     {
         using C = Contracted<float>;
         SiteState const saved = site_state;
-        site_state = {Contraction::All, 0, 0, 0};
+        site_state = {Contraction::All, 0};
         int const n = sides();
         for (std::size_t i = 0; i < b.points; ++i) {
             DomainEdges<4, float> const at = edges_at(b, i);

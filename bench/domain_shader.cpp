@@ -65,7 +65,7 @@ void run(benchmark::State& state, int per_patch, Contraction contraction = Contr
 {
     Workload w(int(state.range(0)), per_patch);
     DomainProgramOn<Shader, T> const program;
-    ShaderBinding const binding(Shader{}, SiteState{contraction, 0, 0, 0});
+    ShaderBinding const binding(Shader{}, SiteState{contraction, 0});
     StageBuffers const buffers({});
     StageCounters counters;
     std::uint64_t evaluations = 0;

@@ -11,6 +11,7 @@
 
 #include "emu/counted.h"
 
+#include <type_traits>
 #include <utility>
 
 namespace tessemu {
@@ -22,16 +23,6 @@ enum class Contraction {
     Mixed, ///< site by site, from a seed; for testing shaders
 };
 
-/// The rule that the thread's sums follow, and where in the source it is.
-struct SiteState {
-    Contraction contraction = Contraction::None;
-    std::uint64_t seed = 0, scope = 0, next = 0;
-
-    /// Whether the next sum takes its product.
-    bool fuses();
-};
-constinit inline thread_local SiteState site_state{};
-
 namespace detail {
 constexpr std::uint64_t mix(std::uint64_t a, std::uint64_t b)
 {
@@ -42,28 +33,63 @@ constexpr std::uint64_t mix(std::uint64_t a, std::uint64_t b)
 }
 } // namespace detail
 
-inline bool SiteState::fuses()
-{
-    if (contraction != Contraction::Mixed) return contraction == Contraction::All;
-    return detail::mix(detail::mix(seed, scope), next++) & 1;
-}
+/// The rule that the thread's sums follow, and where in the source it is.
+class SiteState {
+public:
+    constexpr SiteState() = default;
+    constexpr SiteState(Contraction c, std::uint64_t seed) : contraction_(c), seed_(seed)
+    {
+        enter(0, 0);
+    }
+
+    /// A numbering of its own from here on, whose next site is `next`.
+    constexpr void enter(std::uint64_t scope, std::uint64_t next)
+    {
+        scope_ = scope, next_ = next;
+        key_ = detail::mix(seed_, scope);
+    }
+    /// The name of a scope that is entered here.
+    std::uint64_t inner_scope() const { return detail::mix(scope_, next_); }
+    std::uint64_t named_scope(std::uint64_t name) const { return detail::mix(seed_, name); }
+    void restart() { next_ = 0; }
+    void skip_site() { ++next_; }
+
+    /// Whether the next sum takes its product.
+    bool fuses()
+    {
+        if (contraction_ != Contraction::Mixed) return contraction_ == Contraction::All;
+        return detail::mix(key_, next_++) & 1;
+    }
+
+private:
+    Contraction contraction_ = Contraction::None;
+    std::uint64_t seed_ = 0, scope_ = 0, next_ = 0;
+    std::uint64_t key_ = 0; ///< of the seed and the scope
+};
+constinit inline thread_local SiteState site_state{};
 
 /// Numbers the sites of a piece of source that is entered here, and restores the caller's
 /// numbering.
 template <class T> class SiteScope {
 public:
-    SiteScope() { enter(detail::mix(site_state.scope, site_state.next)); }
-    explicit SiteScope(std::uint64_t name) { enter(detail::mix(site_state.seed, name)); }
+    SiteScope()
+    {
+        if constexpr (ScalarTraits<T>::kSites) enter(site_state.inner_scope());
+    }
+    explicit SiteScope(std::uint64_t name)
+    {
+        if constexpr (ScalarTraits<T>::kSites) enter(site_state.named_scope(name));
+    }
     ~SiteScope()
     {
         if constexpr (ScalarTraits<T>::kSites) {
-            site_state.scope = scope_;
-            site_state.next = next_ + 1;
+            site_state = outer_;
+            site_state.skip_site();
         }
     }
     void restart()
     {
-        if constexpr (ScalarTraits<T>::kSites) site_state.next = 0;
+        if constexpr (ScalarTraits<T>::kSites) site_state.restart();
     }
     SiteScope(SiteScope const&) = delete;
     SiteScope& operator=(SiteScope const&) = delete;
@@ -71,14 +97,11 @@ public:
 private:
     void enter(std::uint64_t scope)
     {
-        if constexpr (ScalarTraits<T>::kSites) {
-            scope_ = site_state.scope;
-            next_ = site_state.next;
-            site_state.scope = scope;
-            site_state.next = 0;
-        }
+        outer_ = site_state;
+        site_state.enter(scope, 0);
     }
-    std::uint64_t scope_ = 0, next_ = 0;
+    struct Nothing {};
+    [[no_unique_address]] std::conditional_t<ScalarTraits<T>::kSites, SiteState, Nothing> outer_;
 };
 
 /// A group of invocations starts at the shader's first line, with these lanes.
@@ -87,7 +110,7 @@ private:
 template <class T> void begin_group(std::uint32_t active_bits, std::uint64_t first_site = 0)
 {
     execution.activate(active_bits);
-    if constexpr (ScalarTraits<T>::kSites) site_state.scope = site_state.next = first_site;
+    if constexpr (ScalarTraits<T>::kSites) site_state.enter(first_site, first_site);
 }
 
 template <class T> struct Contracted {

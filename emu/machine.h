@@ -1,9 +1,9 @@
 // The machine a shader runs on: lanes, contraction, and the two scalars that it is compiled for.
 //
 // Fast: the widest lanes that the build's instruction set fills, products and sums apart. Checking:
-// four lanes, the fewest that derivatives need, where each sum asks at run time whether it takes
-// its product; with Contraction::None it gives the fast machine's bits and counts. A build with
-// TESSEMU_ALL_LANES has both for 4, 8 and 16 lanes, to show that results do not depend on them.
+// at most eight of them, where each sum asks at run time whether it takes its product; with
+// Contraction::None it gives the fast machine's bits and counts. A build with TESSEMU_ALL_LANES has
+// both for 4, 8 and 16 lanes, to show that results do not depend on them.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -12,6 +12,7 @@
 #include "emu/error.h"
 #include "emu/memory.h"
 
+#include <algorithm>
 #include <memory>
 #include <type_traits>
 #include <vector>
@@ -26,13 +27,13 @@ struct Machine {
     bool checking = false;
 
     /// The thread's state at a stage's door.
-    SiteState sites() const { return {contraction, seed, 0, 0}; }
+    SiteState sites() const { return {contraction, seed}; }
 };
 
 template <int N> using FastLanes = Counted<Lanes<N>>;
 template <int N> using CheckLanes = Contracted<Counted<Lanes<N>>>;
 using FastScalar = FastLanes<kNativeLanes>;
-using CheckScalar = CheckLanes<4>;
+using CheckScalar = CheckLanes<std::min(kNativeLanes, 8)>;
 
 /// Lane counts that the build holds, ascending.
 #if defined(TESSEMU_ALL_LANES)

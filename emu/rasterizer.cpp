@@ -4,11 +4,28 @@
 #include <bit>
 #include <cassert>
 
+#if defined(__AVX__)
+#include <immintrin.h>
+#endif
+
 namespace tessemu {
 
 namespace {
 
-typedef std::int64_t I64x8 __attribute__((vector_size(64)));
+// A value for each pixel of a quad: left top, right top, left bottom, right bottom.
+typedef std::int64_t I64x4 __attribute__((vector_size(32)));
+
+// Bit l: lane l is negative.
+std::uint32_t sign_bits(I64x4 v)
+{
+#if defined(__AVX__)
+    return std::uint32_t(_mm256_movemask_pd(__m256d(v)));
+#else
+    std::uint32_t bits = 0;
+    for (int l = 0; l < 4; ++l) bits |= std::uint32_t(v[l] < 0) << l;
+    return bits;
+#endif
+}
 
 // An oriented edge function, positive inside; samples on it belong to top and left edges (R102).
 struct Edge {
@@ -33,6 +50,12 @@ struct Edge {
 std::int64_t round_half_up(double v)
 {
     return std::int64_t(__builtin_floor(v + 0.5));
+}
+
+// Calls f with the number of each bit that is set, ascending.
+void for_each_bit(std::uint32_t bits, auto const& f)
+{
+    for (; bits; bits &= bits - 1) f(std::countr_zero(bits));
 }
 
 // Does a line, going from its start to its end, leave the diamond |x| + |y| < 1/2 about a pixel's
@@ -86,9 +109,8 @@ bool leaves_diamond(std::int64_t x0, std::int64_t y0, std::int64_t x1, std::int6
 } // namespace
 
 // The convex area that a primitive covers.
-struct TileRasterizer::Edges {
-    Edge edge[4];
-    int count = 0;
+template <int kEdges> struct TileRasterizer::Area {
+    Edge edge[kEdges];
 };
 
 // Interpolation over a primitive: attribute = a0 + b1 (a1 - a0) + b2 (a2 - a0), where b1 and b2 are
@@ -181,14 +203,12 @@ void TileRasterizer::draw(AssembledVertices const& vs, AssembledPrimitive const&
     auto const& [a, b, c] = p.v;
     std::int64_t const x[3] = {vs.x[a], vs.x[b], vs.x[c]}, y[3] = {vs.y[a], vs.y[b], vs.y[c]};
     Weights weights(vs, p);
-    Edges area;
     if (p.vertices == 3) {
-        // Edge i lies opposite vertex i.
+        Area<3> area; // edge i lies opposite vertex i
         for (std::size_t i = 0; i < 3; ++i) {
             std::size_t const j = (i + 1) % 3, k = (i + 2) % 3;
             area.edge[i] = {x[j], y[j], x[k], y[k]};
         }
-        area.count = 3;
         weights.form[0] = area.edge[1];
         weights.form[1] = area.edge[2];
         weights.inverse = 1.0f / float(area.edge[0](x[0], y[0]));
@@ -196,12 +216,8 @@ void TileRasterizer::draw(AssembledVertices const& vs, AssembledPrimitive const&
     }
     if (p.vertices == 1) { // a square of one pixel (R108)
         std::int64_t const l = x[0] - 128, r = x[0] + 128, t = y[0] - 128, m = y[0] + 128;
-        area.edge[0] = {l, t, r, t};
-        area.edge[1] = {r, t, r, m};
-        area.edge[2] = {r, m, l, m};
-        area.edge[3] = {l, m, l, t};
-        area.count = 4;
-        return draw_area(area, weights, pixels);
+        return draw_area(Area<4>{{{l, t, r, t}, {r, t, r, m}, {r, m, l, m}, {l, m, l, t}}}, weights,
+                         pixels);
     }
     std::int64_t const dx = x[1] - x[0], dy = y[1] - y[0];
     if (dx == 0 && dy == 0) return;
@@ -217,47 +233,53 @@ void TileRasterizer::draw(AssembledVertices const& vs, AssembledPrimitive const&
                        ny = round_half_up(-double(dx) * half);
     std::int64_t const cx[4] = {x[0] + nx, x[1] + nx, x[1] - nx, x[0] - nx};
     std::int64_t const cy[4] = {y[0] + ny, y[1] + ny, y[1] - ny, y[0] - ny};
+    Area<4> area;
     for (std::size_t i = 0; i < 4; ++i)
         area.edge[i] = {cx[i], cy[i], cx[(i + 1) % 4], cy[(i + 1) % 4]};
-    area.count = 4;
     draw_area(area, weights, pixels);
 }
 
-void TileRasterizer::draw_area(Edges const& area, Weights const& weights, Rect pixels)
+template <int kEdges>
+void TileRasterizer::draw_area(Area<kEdges> const& area, Weights const& weights, Rect pixels)
 {
-    // Two quads a step: left top, right top, left bottom, right bottom of the first, then of the
-    // second.
-    constexpr I64x8 kX{0, 256, 0, 256, 512, 768, 512, 768}, kY{0, 0, 256, 256, 0, 0, 256, 256};
-    std::size_t const samples = pattern_.size();
-    I64x8 step[4];
-    for (int i = 0; i < area.count; ++i) step[i] = area.edge[i].dx * kY - area.edge[i].dy * kX;
-    for (int y = pixels.top & ~1; y < pixels.bottom; y += 2)
-        for (int x = pixels.left & ~3; x < pixels.right; x += 4) {
-            std::uint32_t covered[2][4] = {};
-            bool any = false;
-            for (std::size_t s = 0; s < samples; ++s) {
-                std::int64_t const cx = std::int64_t(x) * 256 + 128 + pattern_[s].x * 16;
-                std::int64_t const cy = std::int64_t(y) * 256 + 128 + pattern_[s].y * 16;
-                I64x8 in = I64x8{} - 1;
-                for (int i = 0; i < area.count; ++i) {
-                    Edge const& e = area.edge[i];
-                    int const least = e.top_left || setup_.inclusive_edges ? 0 : 1;
-                    in &= (e(cx, cy) + step[i] >= least + I64x8{});
-                }
-                for (int l = 0; l < 8; ++l) covered[l / 4][l % 4] |= std::uint32_t(in[l] & 1) << s;
-            }
-            for (int q = 0; q < 2; ++q) {
-                for (int l = 0; l < 4; ++l) {
-                    int const px = x + 2 * q + (l & 1), py = y + (l >> 1);
-                    if (px < pixels.left || px >= pixels.right || py < pixels.top ||
-                        py >= pixels.bottom)
-                        covered[q][l] = 0;
-                    any = any || covered[q][l];
-                }
-                if (any) draw_quad(weights, x + 2 * q, y, covered[q]);
-                any = false;
-            }
+    constexpr std::uint32_t kTop = 0b0011, kBottom = 0b1100, kLeft = 0b0101, kRight = 0b1010;
+    int const samples = int(pattern_.size()), left = pixels.left & ~1, top = pixels.top & ~1;
+    I64x4 row[kEdges];                 // edge functions at the centres of the row's first quad
+    std::int64_t at_sample[kEdges][8]; // what a sample's offset adds
+    for (int i = 0; i < kEdges; ++i) {
+        Edge const& e = area.edge[i];
+        int const least = e.top_left || setup_.inclusive_edges ? 0 : 1;
+        std::int64_t const first = e(left * 256 + 128, top * 256 + 128) - least;
+        std::int64_t const right = -256 * e.dy, down = 256 * e.dx;
+        row[i] = I64x4{first, first + right, first + down, first + right + down};
+        for (int s = 0; s < samples; ++s) {
+            SampleOffset const o = pattern_[std::size_t(s)];
+            at_sample[i][s] = 16 * (e.dx * o.y - e.dy * o.x);
         }
+    }
+    for (int y = top; y < pixels.bottom; y += 2) {
+        std::uint32_t const rows =
+            (y >= pixels.top ? kTop : 0) | (y + 1 < pixels.bottom ? kBottom : 0);
+        I64x4 centre[kEdges];
+        for (int i = 0; i < kEdges; ++i) {
+            centre[i] = row[i];
+            row[i] += 512 * area.edge[i].dx;
+        }
+        for (int x = left; x < pixels.right; x += 2) {
+            std::uint32_t const bounded =
+                rows & ((x >= pixels.left ? kLeft : 0) | (x + 1 < pixels.right ? kRight : 0));
+            std::uint32_t covered[4] = {}, any = 0;
+            for (int s = 0; s < samples; ++s) {
+                I64x4 outside{};
+                for (int i = 0; i < kEdges; ++i) outside |= centre[i] + at_sample[i][s];
+                std::uint32_t const in = ~sign_bits(outside) & bounded;
+                any |= in;
+                for_each_bit(in, [&](int l) { covered[l] |= 1u << s; });
+            }
+            for (int i = 0; i < kEdges; ++i) centre[i] -= 512 * area.edge[i].dy;
+            if (any) draw_quad(weights, x, y, covered);
+        }
+    }
 }
 
 void TileRasterizer::draw_line(Weights const& weights, AssembledVertices const& vs,
@@ -300,57 +322,56 @@ void TileRasterizer::draw_quad(Weights const& weights, int x, int y,
 {
     AssembledPrimitive const& p = weights.primitive;
     RasterTarget const& target = setup_.target;
-    std::size_t const samples = pattern_.size();
     int const clips = setup_.layout.clip_distances;
-    std::uint32_t mask[4], pass[4] = {};
+    bool const test = early_ && merger_.depth_or_stencil();
+    std::uint32_t mask[4], pass[4];
     std::uint32_t any = 0;
+    std::uint64_t covered_samples = 0, passed_samples = 0;
     for (int l = 0; l < 4; ++l) {
         int const px = x + (l & 1), py = y + (l >> 1);
+        auto const at = [&](int s) {
+            SampleOffset const o = pattern_[std::size_t(s)];
+            return weights.at(std::int64_t(px) * 256 + 128 + o.x * 16,
+                              std::int64_t(py) * 256 + 128 + o.y * 16);
+        };
         mask[l] = covered[l];
-        for (std::size_t s = 0; s < samples && mask[l]; ++s) {
-            if (!(mask[l] >> s & 1)) continue;
-            std::int64_t const sx = std::int64_t(px) * 256 + 128 + pattern_[s].x * 16;
-            std::int64_t const sy = std::int64_t(py) * 256 + 128 + pattern_[s].y * 16;
-            if (clips) { // R93
-                auto const at = weights.perspective(weights.at(sx, sy));
-                int const first = setup_.layout.floats - setup_.layout.cull_distances - clips;
+        if (clips) { // R93
+            int const first = setup_.layout.floats - setup_.layout.cull_distances - clips;
+            for_each_bit(covered[l], [&](int s) {
+                auto const here = weights.perspective(at(s));
                 for (int k = first; k < first + clips; ++k)
-                    if (!(weights.attribute(at, k) >= 0)) mask[l] &= ~(1u << s);
-                if (!(mask[l] >> s & 1)) continue;
-            }
-            if (target.coverage) target.coverage->add(px, py, int(s), p.front_face);
+                    if (!(weights.attribute(here, k) >= 0)) mask[l] &= ~(1u << s);
+            });
         }
+        if (target.coverage)
+            for_each_bit(mask[l], [&](int s) { target.coverage->add(px, py, s, p.front_face); });
         mask[l] &= sample_mask_;
-        counters_.covered_samples += std::uint64_t(std::popcount(mask[l]));
-        if (early_) {
-            for (std::size_t s = 0; s < samples; ++s) {
-                if (!(mask[l] >> s & 1)) continue;
-                float const z =
-                    weights.z(weights.at(std::int64_t(px) * 256 + 128 + pattern_[s].x * 16,
-                                         std::int64_t(py) * 256 + 128 + pattern_[s].y * 16));
-                if (merger_.test(px, py, int(s), z, p.front_face, target.viewports[p.viewport]))
-                    pass[l] |= 1u << s;
-            }
-            counters_.passed_samples += std::uint64_t(std::popcount(pass[l]));
-        } else {
-            pass[l] = mask[l];
-        }
+        pass[l] = mask[l];
+        if (test)
+            for_each_bit(mask[l], [&](int s) {
+                if (!merger_.test(px, py, s, weights.z(at(s)), p.front_face,
+                                  target.viewports[p.viewport]))
+                    pass[l] &= ~(1u << s);
+            });
+        covered_samples += std::uint64_t(std::popcount(mask[l]));
+        passed_samples += std::uint64_t(std::popcount(pass[l]));
         any |= pass[l];
     }
+    counters_.covered_samples += covered_samples;
+    if (early_) counters_.passed_samples += passed_samples;
     if (!any || !setup_.pixel_shader) return;
     if (!info_.sample_frequency) {
         for (int l = 0; l < 4; ++l)
             if (quads_ || pass[l])
                 push(weights, x + (l & 1), y + (l >> 1), -1, mask[l], pass[l], pass[l] != 0);
     } else {
-        for (std::size_t s = 0; s < samples; ++s) {
-            if (!(any >> s & 1)) continue;
+        for_each_bit(any, [&](int s) {
             for (int l = 0; l < 4; ++l)
                 if (quads_ || (pass[l] >> s & 1))
-                    push(weights, x + (l & 1), y + (l >> 1), int(s), mask[l], pass[l] & (1u << s),
+                    push(weights, x + (l & 1), y + (l >> 1), s, mask[l], pass[l] & (1u << s),
                          (pass[l] >> s & 1) != 0);
             if (queued_ + 4 > kQueue) shade_and_merge();
-        }
+        });
     }
     if (queued_ + 4 > kQueue) shade_and_merge();
 }

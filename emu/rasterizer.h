@@ -59,12 +59,13 @@ public:
 private:
     static constexpr std::size_t kQueue = 256, kGroup = 16;
     static constexpr std::size_t kRow = kQueue + kGroup;
-    struct Edges;
+    template <int kEdges> struct Area;
     struct Weights;
     struct Pixel;
     using Floats = std::vector<float>;
 
-    void draw_area(Edges const& edges, Weights const& weights, Rect pixels);
+    template <int kEdges>
+    void draw_area(Area<kEdges> const& area, Weights const& weights, Rect pixels);
     void draw_line(Weights const& weights, AssembledVertices const& vertices,
                    AssembledPrimitive const& p, Rect pixels);
     void draw_quad(Weights const& weights, int x, int y, std::uint32_t const (&covered)[4]);

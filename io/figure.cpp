@@ -5,8 +5,9 @@
 #include "io/image_writer.h"
 #include "shaders_cpp/pixel/colored_view.h"
 
+#include <fmt/format.h> // before OpenImageIO, which brings its own, header-only
+
 #include <OpenImageIO/imagebufalgo.h>
-#include <fmt/format.h>
 
 #include <cmath>
 

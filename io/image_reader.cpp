@@ -3,8 +3,9 @@
 
 #include "emu/error.h"
 
+#include <fmt/format.h> // before OpenImageIO, which brings its own, header-only
+
 #include <OpenImageIO/imageio.h>
-#include <fmt/format.h>
 
 #include <cmath>
 

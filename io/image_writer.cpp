@@ -3,6 +3,8 @@
 
 #include "io/atomic_file.h"
 
+#include <fmt/format.h> // before OpenImageIO, which brings its own, header-only
+
 #include <OpenImageIO/imageio.h>
 
 namespace tessemu {

@@ -18,7 +18,7 @@ class Under {
 public:
     explicit Under(Contraction contraction, std::uint64_t seed = 0)
     {
-        site_state = {contraction, seed, 0, 0};
+        site_state = {contraction, seed};
     }
     ~Under() { site_state = {}; }
 };
