@@ -189,7 +189,7 @@ struct SchemeSamples {
     std::vector<int> sides; ///< of a quad patch that the point lies on: 0 to 2
 };
 
-// The drawn mesh's face at a patch's place, and how often the patch is turned against it.
+// The drawn mesh's face that a patch lies on, whole or a part of it.
 class FacesByPlace {
 public:
     explicit FacesByPlace(RefinedMesh const& mesh)
@@ -197,13 +197,35 @@ public:
         for (std::uint32_t f = 0; f < mesh.mesh().faces(); ++f)
             faces_[key(mesh.place(f))] = {f, mesh.place(f).rotation};
     }
-    std::pair<std::uint32_t, PatchPlace> find(PatchPlace const& place) const
+
+    struct OnFace {
+        std::uint32_t face;
+        PatchPlace in_cell; ///< of the patch in the face's cell
+        PatchPlace turn;    ///< from the cell to the face, whose corner 0 need not be the cell's
+
+        UnitPoint at(float u, float v) const
+        {
+            UnitPoint const cell = domain_to_unit(in_cell, u, v);
+            return domain_to_unit(turn, cell.u, cell.v);
+        }
+    };
+    OnFace find(PatchPlace const& place) const
     {
-        auto const [face, rotation] = faces_.at(key(place));
-        PatchPlace in_face;
-        in_face.sides = place.sides;
-        in_face.rotation = std::uint8_t((place.rotation + place.sides - rotation) % place.sides);
-        return {face, in_face};
+        for (PatchPlace cell = place;; --cell.level, cell.i /= 2, cell.j /= 2) {
+            auto const found = faces_.find(key(cell));
+            if (found == faces_.end()) {
+                if (cell.level == 0) throw Error("a patch lies on no face of the drawn mesh");
+                continue;
+            }
+            OnFace out{found->second.first, place, {}};
+            int const steps = place.level - cell.level;
+            out.in_cell.level = std::uint8_t(steps);
+            out.in_cell.i = std::uint16_t(place.i - (cell.i << steps));
+            out.in_cell.j = std::uint16_t(place.j - (cell.j << steps));
+            out.turn.sides = place.sides;
+            out.turn.rotation = std::uint8_t((place.sides - found->second.second) % place.sides);
+            return out;
+        }
     }
 
 private:
@@ -216,13 +238,20 @@ private:
 SchemeSamples sample_scheme(LimitSurface const& limit, PatchMesh const& patches,
                             FrameSettings settings, ThreadPool const& threads)
 {
-    settings.tess_factor = float(limit.grid());
+    FacesByPlace const faces(patches.mesh());
+    // Patches that are parts of a face are drawn as finely as the smallest has points of the grid.
+    int finest = 0;
+    frame_commands(patches, settings, surface_settings(settings))
+        .for_each_surface_draw([&](Draw const& d) {
+            for (PatchPlace const& p : d.patches)
+                finest = std::max(finest, int(faces.find(p).in_cell.level));
+        });
+    settings.tess_factor = float(std::max(1, limit.grid() >> finest));
     settings.partitioning = Partitioning::Integer;
     SchemeSamples out;
     Triangles& scheme = out.triangles;
-    FacesByPlace const faces(patches.mesh());
     visit_surface(patches, settings, threads, [&](SurfacePatch const& p) {
-        auto const [face, in_face] = faces.find(p.place());
+        FacesByPlace::OnFace const on = faces.find(p.place());
         auto const first = std::uint32_t(scheme.position.size());
         for (std::size_t i = 0; i < p.points(); ++i) {
             SurfaceVertex const vertex = p.vertex(i);
@@ -230,10 +259,11 @@ SchemeSamples sample_scheme(LimitSurface const& limit, PatchMesh const& patches,
             scheme.normal.emplace_back(vertex.normal);
             float const u = p.domain().u[i], v = p.domain().v[i];
             std::uint32_t at = kNoPartner;
-            if (limit.has_grid(face)) {
-                UnitPoint const f = domain_to_unit(in_face, u, v);
-                at = limit.vertex(face, int(f.u * float(limit.grid())),
-                                  int(f.v * float(limit.grid())));
+            if (limit.has_grid(on.face)) {
+                UnitPoint const f = on.at(u, v);
+                float const x = f.u * float(limit.grid()), y = f.v * float(limit.grid());
+                if (float(int(x)) == x && float(int(y)) == y)
+                    at = limit.vertex(on.face, int(x), int(y));
             }
             out.partner.push_back(at);
             out.sides.push_back((u == 0 || u == 1) + (v == 0 || v == 1));
@@ -270,8 +300,9 @@ EqualParameterErrors errors_of(LimitSurface const& limit, SchemeSamples const& s
         out.distance[i] = glm::length(t.position[i] - same.position[i]) / diagonal;
         out.angle[i] = angle(t.normal[i], limit.normals()[at]);
     }
-    for (std::size_t i = 0; i + 2 < t.index.size(); i += 3) // a patch's points all have partners
-        if (samples.partner[t.index[i]] != kNoPartner)
+    auto const paired = [&](std::uint32_t i) { return samples.partner[i] != kNoPartner; };
+    for (std::size_t i = 0; i + 2 < t.index.size(); i += 3)
+        if (paired(t.index[i]) && paired(t.index[i + 1]) && paired(t.index[i + 2]))
             out.triangles.insert(out.triangles.end(), {t.index[i], t.index[i + 1], t.index[i + 2]});
     same.index = out.triangles;
     same.weigh();

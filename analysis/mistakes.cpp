@@ -2,10 +2,11 @@
 #include "analysis/mistakes.h"
 
 #include "pipeline/forms/stencil_form.h"
-#include "shaders_cpp/domain_edges.h"
+#include "pipeline/forms/two_stage_form.h"
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 
 namespace tessemu {
 
@@ -62,11 +63,66 @@ PlantedMistake plant_mistake(RefinedMesh const& mesh, Mistake kind)
 
 namespace {
 
-// A domain program around another one, which makes its mistake at the patch's edges.
+// Writes a record as load_column reads it.
+template <class P> void store_column(P const& record, float* memory, std::size_t stride)
+{
+    for_each_scalar(record, [&](float scalar) {
+        *memory = scalar;
+        memory += stride;
+    });
+}
+
+// How a form's hull shader leaves the control points that the cubics of a patch's edges are made
+// of. A scheme's records may go on behind what is read of them here.
+enum class EdgePoints {
+    ByName,   ///< all p, then all e+, then all e-, each corner by corner
+    ByCorner, ///< p, e+, e- of each corner in a record: CornerVectors
+};
+
+// None where the edges of the form's patches are no such cubics.
+std::optional<EdgePoints> edge_points_of(PatchMesh const& patches)
+{
+    if (dynamic_cast<StencilForm const*>(&patches)) return EdgePoints::ByName;
+    if (dynamic_cast<TwoStageForm const*>(&patches)) return EdgePoints::ByCorner;
+    return {};
+}
+
+// The control points of a patch in the order by name, as cubic_edge asks for them.
+class ControlPointsByName {
+public:
+    /// \param floats  of a record
+    ControlPointsByName(EdgePoints points, float const* memory, int floats, int sides)
+        : points_(points),
+          memory_(memory),
+          floats_(floats),
+          sides_(sides)
+    {
+    }
+    ControlVertex<float> operator[](int i) const
+    {
+        if (points_ == EdgePoints::ByName)
+            return load_record<ControlVertex<float>>(memory_ + i * floats_);
+        auto const corner = load_record<CornerVectors<CornerLayout::kEMinus + 1, float>>(
+            memory_ + i % sides_ * floats_);
+        return {corner.vectors[std::size_t(i / sides_)]};
+    }
+
+private:
+    EdgePoints points_;
+    float const* memory_;
+    int floats_, sides_;
+};
+
+// A domain program around a WatertightPatch's, which makes its mistake at the patch's edges.
 class MistakenEdges final : public DomainProgram {
 public:
-    MistakenEdges(DomainShader right, Mistake mistake) : right_(std::move(right)), mistake_(mistake)
+    MistakenEdges(DomainShader right, Mistake mistake, EdgePoints points)
+        : right_(std::move(right)),
+          mistake_(mistake),
+          points_(points)
     {
+        assert(right_->patch_constant_floats() == scalar_count<EdgeRegister<float>>());
+        assert(right_->output_floats() == scalar_count<SurfacePoint<float>>());
     }
     TessellatorDomain domain() const override { return right_->domain(); }
     int control_points() const override { return right_->control_points(); }
@@ -94,40 +150,24 @@ public:
     }
 
 private:
-    static constexpr int kRegister = 4; // floats of an EdgeRegister
+    using Point = SurfacePoint<float>;
+    using Register = EdgeRegister<float>;
     int sides() const { return sides_of(right_->domain()); }
-    float& output(DomainBatch const& b, std::size_t k, std::size_t i) const
-    {
-        return b.outputs[k * b.stride + i];
-    }
 
     // Edges walked in the patch's own direction: there the field W is -W, backwards.
     std::vector<float> own_direction(DomainBatch const& b) const
     {
-        std::vector<float> c(b.patch_constants,
-                             b.patch_constants + b.patch_constant_count * kRegister);
+        constexpr int kFloats = scalar_count<Register>();
+        ControlPoints<Register> const registers(b.patch_constants, b.patch_constant_count);
+        std::vector<float> out(b.patch_constants,
+                               b.patch_constants + b.patch_constant_count * kFloats);
         for (int k = 0; k < sides(); ++k) {
-            float* const edge = c.data() + 4 * k * kRegister;
-            if (!(edge[3] > 0)) continue;
+            if (!(registers[4 * k].reversed > 0)) continue;
             for (int m = 0; m < 4; ++m)
-                for (int x = 0; x < 3; ++x)
-                    edge[m * kRegister + x] = -b.patch_constants[(4 * k + 3 - m) * kRegister + x];
-            for (int m = 0; m < 4; ++m) edge[m * kRegister + 3] = 0;
+                store_column(Register{-registers[4 * k + 3 - m].vector, 0},
+                             out.data() + (4 * k + m) * kFloats, 1);
         }
-        return c;
-    }
-
-    // Control point 0 to 3 of edge k: of points p, e+, e-, each corner by corner, or of corners
-    // with these as their first three vectors.
-    float3<float> edge_point(DomainBatch const& b, int k, int i) const
-    {
-        int const n = sides(), corner = i < 2 ? k : (k + 1) % n;
-        int const which = i == 0 || i == 3 ? 0 : i; // p, e+, e-
-        int const floats = right_->control_point_floats();
-        float const* const at = b.control_point_count == n
-                                    ? b.control_points + corner * floats + 3 * which
-                                    : b.control_points + (which * n + corner) * floats;
-        return {at[0], at[1], at[2]};
+        return out;
     }
 
     DomainEdges<4, float> edges_at(DomainBatch const& b, std::size_t i) const
@@ -142,6 +182,8 @@ private:
         SiteState const saved = site_state;
         site_state = {Contraction::All, 0};
         int const n = sides();
+        ControlPointsByName const points(points_, b.control_points, right_->control_point_floats(),
+                                         n);
         for (std::size_t i = 0; i < b.points; ++i) {
             DomainEdges<4, float> const at = edges_at(b, i);
             for (int k = 0; k < n; ++k) {
@@ -149,12 +191,13 @@ private:
                 C const t = at.t[k], s = C(1.0f) - t, ss = s * s, tt = t * t;
                 C const m = C(3.0f) * C(s * t);
                 C const b0 = ss * s, b1 = m * s, b2 = m * t, b3 = tt * t;
-                float3<C> const p0 = edge_point(b, k, 0), p1 = edge_point(b, k, 1),
-                                p2 = edge_point(b, k, 2), p3 = edge_point(b, k, 3);
+                EdgeCurve<float> const edge =
+                    n == 4 ? cubic_edge<4>(points, k) : cubic_edge<3>(points, k);
+                float3<C> const p0 = edge.p0, p1 = edge.p1, p2 = edge.p2, p3 = edge.p3;
                 float3<C> const p = (b0 * p0 + b3 * p3) + (b1 * p1 + b2 * p2);
-                output(b, 0, i) = p.x.value;
-                output(b, 1, i) = p.y.value;
-                output(b, 2, i) = p.z.value;
+                auto point = load_column<Point>(b.outputs + i, b.stride);
+                point.position = {p.x.value, p.y.value, p.z.value};
+                store_column(point, b.outputs + i, b.stride);
             }
         }
         site_state = saved;
@@ -163,9 +206,9 @@ private:
     // On edges the normal of a point just inside, which is the patch's own.
     void own_normals(DomainBatch const& b, StageCounters& counters) const
     {
-        std::size_t const whole = (b.points + 15) / 16 * 16;
-        std::vector<float> u(whole), v(whole),
-            inside(b.stride * std::size_t(right_->output_floats()));
+        std::size_t const stride = (b.points + 15) / 16 * 16; // whole groups of lanes
+        std::vector<float> u(stride), v(stride),
+            inside(stride * std::size_t(scalar_count<Point>()));
         for (std::size_t i = 0; i < b.points; ++i) {
             float const middle = sides() == 4 ? 0.5f : 1.0f / 3;
             u[i] = b.u[i] + 0x1p-16f * (middle - b.u[i]);
@@ -175,27 +218,29 @@ private:
         other.u = u.data();
         other.v = v.data();
         other.outputs = inside.data();
+        other.stride = stride;
         right_.run(other, counters);
         for (std::size_t i = 0; i < b.points; ++i) {
             DomainEdges<4, float> const at = edges_at(b, i);
             bool on = false;
             for (int k = 0; k < sides(); ++k) on = on || at.on[k];
-            for (std::size_t c = 3; on && c < 6; ++c) output(b, c, i) = inside[c * b.stride + i];
+            if (!on) continue;
+            auto point = load_column<Point>(b.outputs + i, b.stride);
+            point.normal = load_column<Point>(inside.data() + i, stride).normal;
+            store_column(point, b.outputs + i, b.stride);
         }
     }
 
     DomainShader right_;
     Mistake mistake_;
+    EdgePoints points_;
 };
 
-// Whether the draw's domain shader is one that the mistakes of edges are about.
-bool has_cubic_edges(GraphicsPipelineDesc const& d)
+// A word of a patch, see StencilPatchWords.
+template <class Group> auto& word_of(Group& g, std::size_t patch, int which)
 {
-    if (!d.hull_shader || d.domain_shader->patch_constant_floats() != 4) return false;
-    int const n = sides_of(d.domain_shader->domain()), points = d.hull_shader.control_points();
-    return d.domain_shader->domain() != TessellatorDomain::Isoline &&
-           d.hull_shader.patch_constants() >= 5 * n && d.domain_shader->output_floats() == 6 &&
-           (points == n ? d.domain_shader->control_point_floats() >= 9 : points >= 3 * n);
+    int const count = StencilPatchWords::count(g.patches[patch].sides);
+    return g.words[patch * std::size_t(count) + std::size_t(which)];
 }
 
 // The tables with the last bit of one weight flipped: the patch gets weights of its own. None where
@@ -205,36 +250,41 @@ std::optional<StencilForm::Tables> flipped_weight(StencilForm const& form, std::
 {
     StencilForm::Tables out = form.tables();
     StencilForm::Group& g = out.groups[group];
-    std::size_t const words = g.words.size() / g.patches.size();
-    std::uint32_t& first = g.words[patch * words];
-    auto const rows = std::size_t(g.words[patch * words + 2]), inputs = std::size_t(g.inputs);
+    std::uint32_t& first = word_of(g, patch, StencilPatchWords::kWeights);
+    auto const rows = std::size_t(word_of(g, patch, StencilPatchWords::kRows)),
+               inputs = std::size_t(g.inputs);
     // The type's weights and, behind them, its constants: up to where the next type begins.
     std::size_t const begin = first;
     std::size_t end = out.weights.size();
     for (StencilForm::Group const& other : out.groups)
-        for (std::size_t w = 0; w < other.words.size();
-             w += other.words.size() / other.patches.size())
-            if (other.words[w] > begin) end = std::min(end, std::size_t(other.words[w]));
+        for (std::size_t p = 0; p < other.patches.size(); ++p)
+            if (std::size_t const start = word_of(other, p, StencilPatchWords::kWeights);
+                start > begin)
+                end = std::min(end, start);
     std::vector<float> own(out.weights.begin() + std::ptrdiff_t(begin),
                            out.weights.begin() + std::ptrdiff_t(end));
+    auto const weight_of = [&](std::size_t input, std::size_t row) -> float& {
+        return own[input * rows + row];
+    };
     // A last bit may drown in the sum's rounding: of the weights of the corners' limit points, the
-    // first that changes its point.
+    // first rows of the table, the first that changes its point.
     std::uint32_t const* const ids = g.indices.data() + patch * inputs;
     std::uint8_t const* const order = g.order.data() + patch * inputs;
     auto const sum = [&](std::size_t row) {
         glm::vec3 s(0);
         for (std::size_t k = 0; k < inputs; ++k)
-            s += own[order[k] * rows + row] * form.mesh().mesh().positions[ids[order[k]]];
+            s += weight_of(order[k], row) * form.mesh().mesh().positions[ids[order[k]]];
         return s;
     };
     std::size_t const sides = g.patches[patch].sides;
     bool changed = false;
     for (std::size_t at = 0; at < inputs * sides && !changed; ++at) {
-        float& weight = own[at / sides * rows + at % sides];
+        std::size_t const row = at % sides;
+        float& weight = weight_of(at / sides, row);
         float const right = weight;
-        glm::vec3 const before = sum(at % sides);
+        glm::vec3 const before = sum(row);
         weight = std::bit_cast<float>(std::bit_cast<std::uint32_t>(right) ^ 1u);
-        changed = right != 0 && sum(at % sides) != before;
+        changed = right != 0 && sum(row) != before;
         if (!changed) weight = right;
     }
     if (!changed) return {};
@@ -250,7 +300,18 @@ public:
           right_(right),
           mistake_(mistake)
     {
-        if (mistake.kind == Mistake::Weights) plant_weight();
+        switch (mistake.kind) {
+        case Mistake::Order:
+        case Mistake::Contraction:
+        case Mistake::Normals:
+            find_edges();
+            break;
+        case Mistake::Weights:
+            plant_weight();
+            break;
+        default:
+            break;
+        }
     }
 
     CommandList commands(SurfaceSettings const& settings) const override
@@ -285,13 +346,9 @@ private:
         case Mistake::Order:
         case Mistake::Contraction:
         case Mistake::Normals:
-            if (!has_cubic_edges(d.pipeline))
-                throw Error(
-                    "the mistake '" + std::string(name_of(mistake_.kind)) +
-                    "' is one of shared cubic edges, which the scheme's patches do not have");
-            d.pipeline.domain_shader = {
-                std::make_shared<MistakenEdges>(d.pipeline.domain_shader, mistake_.kind),
-                d.pipeline.domain_shader.binding()};
+            d.pipeline.domain_shader = {std::make_shared<MistakenEdges>(
+                                            d.pipeline.domain_shader, mistake_.kind, *edge_points_),
+                                        d.pipeline.domain_shader.binding()};
             break;
         case Mistake::Factors:
             if (auto const p = patch_of(d.patches)) d.options.mistakes.other_factor = *p;
@@ -313,6 +370,13 @@ private:
             if (patches[i].face == mistake_.face) return std::int64_t(i);
         return {};
     }
+    void find_edges()
+    {
+        edge_points_ = edge_points_of(right_);
+        if (!edge_points_)
+            throw Error("the mistake '" + std::string(name_of(mistake_.kind)) +
+                        "' is one of shared cubic edges, which the scheme's patches do not have");
+    }
     void plant_weight()
     {
         form_ = dynamic_cast<StencilForm const*>(&right_);
@@ -328,6 +392,7 @@ private:
     PlantedMistake mistake_;
     StencilForm const* form_ = nullptr;
     std::optional<StencilForm::Tables> tables_;
+    std::optional<EdgePoints> edge_points_;
 };
 
 } // namespace

@@ -42,8 +42,8 @@ struct PlantedMistake {
 /// there is none, in the first that is drawn.
 PlantedMistake plant_mistake(RefinedMesh const& mesh, Mistake kind);
 
-/// The patches with a mistake; they refer to `patches`. Mistakes of edges are those of patches
-/// whose domain shader is a WatertightPatch over cubics p, e+, e-.
+/// The patches with a mistake; they refer to `patches`. Mistakes of edges are those of the stencil
+/// form and the two-stage form, whose patches are WatertightPatches over cubics p, e+, e-.
 ///
 /// \param frame  that they will be drawn with
 /// Throws Error where the mistake cannot be planted, and where nothing would have it.

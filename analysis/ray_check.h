@@ -48,8 +48,8 @@ struct RayCheck {
     std::uint64_t refuted = 0; ///< misses that 113-bit arithmetic finds to meet a front
     std::uint64_t folds = 0;   ///< misses of a surface that is closed there, but inside out
     std::uint64_t past = 0;    ///< rays that pass the outline of the surface by a rounding
-    std::uint64_t control_misses =
-        0; ///< of the same rays on the control, run where there are misses
+    /// Of the same rays on the control, run where there are misses.
+    std::uint64_t control_misses = 0;
     std::vector<RayMiss> confirmed;
 };
 

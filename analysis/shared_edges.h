@@ -29,10 +29,10 @@ public:
     SharedEdges(PatchMesh const& patches, FrameSettings const& frame, bool keep_triangles,
                 ThreadPool const& threads);
 
-    /// Different values of a point, in the order of the patches.
     struct Hash {
         std::size_t operator()(MeshPoint const& p) const;
     };
+    /// Different values of a point, in the order of the patches.
     using Points = std::unordered_map<MeshPoint, std::vector<SeenPoint>, Hash>;
     Points const& points() const { return points_; }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/watertight.h"
 
+#include "analysis/moved_points.h"
 #include "analysis/shared_edges.h"
 #include "shaders_cpp/pixel/id_view.h"
 
@@ -164,16 +165,18 @@ private:
                 "the surface is open: " + std::to_string(open_edges_) + " edges have one patch";
             return v;
         }
-        count_hits(seen_surface(s_.frame), s_.frame.width, s_.frame.height, "", v);
+        count_hits(patches_, seen_surface(s_.frame), s_.frame.width, s_.frame.height, "", v);
         SurfaceSettings rounded = surface_settings(s_.frame);
-        rounded.finish.view_projection = view_projection(s_.frame.camera, 1);
-        rounded.finish.lattice = {kLattice, kLattice}; // half pixels
-        count_hits(rounded, kLattice, kLattice, ", vertices rounded to half pixels", v);
+        rounded.view_projection = view_projection(s_.frame.camera, 1);
+        PointMoves half_pixels;
+        half_pixels.lattice = kLattice;
+        count_hits(MovedPoints(patches_, half_pixels), rounded, kLattice, kLattice,
+                   ", vertices rounded to half pixels", v);
         return v;
     }
 
-    void count_hits(SurfaceSettings const& surface, int width, int height, char const* what,
-                    CheckedVerdict& v) const
+    void count_hits(PatchMesh const& patches, SurfaceSettings const& surface, int width, int height,
+                    char const* what, CheckedVerdict& v) const
     {
         CoverageCounts counts(width, height);
         RasterTarget raster;
@@ -182,7 +185,7 @@ private:
         raster.rasterizer.front_counter_clockwise = true;
         raster.rasterizer.depth_clip_enable = false; // near and far plane hide nothing
         raster.coverage = &counts;
-        run_commands(frame_commands(patches_, s_.frame, surface), threads_, {&raster});
+        run_commands(frame_commands(patches, s_.frame, surface), threads_, {&raster});
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x) {
                 std::size_t const i = counts.index(x, y, 0);
@@ -235,8 +238,9 @@ private:
         }
         std::uint64_t const confirmed = v.failures;
         std::string pictures;
-        // Instances number their triangles, and points moved by parity are in the picture alone.
-        if (!s_.frame.direct3d10 && s_.frame.finish.parity == 0) {
+        // Instances number their triangles; through cracks that parity opened the picture shows
+        // what lies behind.
+        if (!s_.frame.direct3d10 && s_.parity == 0) {
             VisibilityCheck const c =
                 check_visibility(surface_.rays(), surface_.face_of_triangle(), visible_faces(),
                                  s_.frame.camera, s_.frame.width, s_.frame.height, threads_);
@@ -306,7 +310,7 @@ std::vector<CheckedVerdict> check_watertight(PatchMesh const& patches,
                                              WatertightSettings const& settings,
                                              ThreadPool const& threads)
 {
-    return Checker(patches, settings, threads).run();
+    return Checker(MovedPoints(patches, {settings.parity}), settings, threads).run();
 }
 
 bool all_hold(std::vector<CheckedVerdict> const& verdicts)
@@ -320,7 +324,7 @@ ColorTarget draw_cracks(PatchMesh const& patches, WatertightSettings const& sett
 {
     FrameSettings s = settings.frame;
     s.view = View::Lit;
-    Frame frame = draw_frame(patches, s, threads);
+    Frame frame = draw_frame(MovedPoints(patches, {settings.parity}), s, threads);
     Matrix4 const m = view_projection(s.camera, float(s.width) / float(s.height));
     auto const dot_at = [&](int px, int py) {
         for (int y = std::max(0, py - 1); y <= std::min(s.height - 1, py + 1); ++y)

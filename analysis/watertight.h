@@ -50,6 +50,7 @@ struct CheckedVerdict {
 
 struct WatertightSettings {
     FrameSettings frame;         ///< its camera, size and factors; contraction, displacement, pose
+    float parity = 0;            ///< moves every point, see PointMoves
     std::uint64_t rays = 200000; ///< of each kind; 0: no raycast
     std::size_t list = 100;      ///< sites a verdict lists at most
     std::uint32_t seed = 1;      ///< of the rays

@@ -71,9 +71,9 @@ int run(CheckRequest const& o)
     if (!o.output.empty()) check_image_path(o.output);
     Job job = prepare(o.surface, "check");
     set_picture(job, o.picture, o.surface);
-    job.frame.finish.parity = float(o.parity);
     WatertightSettings s;
     s.frame = job.frame;
+    s.parity = float(o.parity);
     s.rays = std::uint64_t(o.rays);
     s.list = 100000;
     PlantedMistake const mistake = mistake_of(o, *job.surface.mesh);
@@ -86,7 +86,7 @@ int run(CheckRequest const& o)
     c.emplace_back("width", std::int64_t(s.frame.width));
     c.emplace_back("height", std::int64_t(s.frame.height));
     c.emplace_back("rays", o.rays);
-    c.emplace_back("parity", double(s.frame.finish.parity));
+    c.emplace_back("parity", double(s.parity));
     c.emplace_back("break", std::string(name_of(o.mistake)));
     if (mistaken) c.emplace_back("break_face", std::int64_t(mistake.face) + 1);
     ThreadPool const threads(o.run.threads);

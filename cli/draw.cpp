@@ -170,7 +170,8 @@ int run(DrawRequest const& o)
                 bar(i * all + n, job.poses.size() * all);
             });
         if (job.poses.size() == 1) break;
-        sequence.push_back({job.poses[i].phase, f.pose->bytes(), frame.statistics,
+        sequence.push_back({job.poses[i].phase, f.pose->bytes(),
+                            ListStatistics{frame.statistics, frame.commands},
                             sha256_of_targets(frame.color, frame.depth)});
         if (!o.output.empty()) write_image(frame.color, numbered(o.output, i));
     }

@@ -203,10 +203,11 @@ void add_options(Verb& verb, ModelRequest& o)
     verb.option("--scheme", o.scheme, parse_scheme, "patch scheme, see 'tessemu schemes'",
                 "gregory-stencil");
     verb.list("--set", o.build.set, parse_parameter, "NAME=VALUE: a parameter of the scheme");
-    verb.option("--subdivide", o.build.subdivide, whole(0, 6),
-                "steps of Catmull-Clark subdivision of the mesh before the scheme, 0 to 6; nothing "
-                "counts them",
-                "0");
+    verb.option(
+        "--subdivide", o.build.subdivide, whole(0, 6),
+        "steps of Catmull-Clark subdivision of the mesh before the scheme, beyond those that it "
+        "asks for, 0 to 6; nothing counts them",
+        "0");
 }
 
 void add_options(Verb& verb, ShadingRequest& o)

@@ -117,7 +117,10 @@ public:
     }
     int control_point_floats() const override { return scalar_count<Point>(); }
     int patch_constant_floats() const override { return scalar_count<Constant>(); }
-    OutputLayout output() const override { return output_layout<Output>(); }
+    OutputLayout output() const override
+    {
+        return output_layout<typename Shader::template Output<float>>();
+    }
 
     void run(ShaderBinding const& binding, DomainBatch const& b,
              StageCounters& counters) const override
@@ -182,7 +185,10 @@ class DomainEpilogProgramOn final : public CompiledProgram<DomainEpilogProgram, 
 
 public:
     int input_floats() const override { return scalar_count<Input>(); }
-    OutputLayout output() const override { return output_layout<Output>(); }
+    OutputLayout output() const override
+    {
+        return output_layout<typename Shader::template Output<float>>();
+    }
 
     void run(ShaderBinding const& binding, DomainBatch const& b, std::size_t begin,
              std::size_t count) const override

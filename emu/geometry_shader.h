@@ -182,7 +182,10 @@ public:
     int max_vertices() const override { return Shader::kMaxVertices; }
     int instances() const override { return instance_count(); }
     int input_floats() const override { return scalar_count<Input>(); }
-    OutputLayout output() const override { return output_layout<Output>(); }
+    OutputLayout output() const override
+    {
+        return output_layout<typename Shader::template Output<float>>();
+    }
 
     void run(ShaderBinding const& binding, GeometryBatch const& b, GeometryResult& result,
              StageCounters& counters, StageBuffers const& buffers) const override

@@ -19,6 +19,7 @@
 
 #include <array>
 #include <tuple>
+#include <typeinfo>
 #include <type_traits>
 
 namespace tessemu {
@@ -208,10 +209,14 @@ template <class P> constexpr int scalar_count()
 /// kCullDistances`.
 struct OutputLayout {
     int floats = 0, clip_distances = 0, cull_distances = 0;
+    std::type_info const* record = nullptr; ///< of float, whatever scalar wrote it
+
+    template <class P> bool holds() const { return record && *record == typeid(P); }
 };
+/// Of a shader's `Output<float>`.
 template <class P> constexpr OutputLayout output_layout()
 {
-    OutputLayout l{scalar_count<P>(), 0, 0};
+    OutputLayout l{scalar_count<P>(), 0, 0, &typeid(P)};
     if constexpr (requires { P::kClipDistances; }) l.clip_distances = P::kClipDistances;
     if constexpr (requires { P::kCullDistances; }) l.cull_distances = P::kCullDistances;
     return l;

@@ -52,7 +52,10 @@ class VertexProgramOn final : public CompiledProgram<VertexProgram, Shader> {
 
 public:
     int input_floats() const override { return scalar_count<Input>(); }
-    OutputLayout output() const override { return output_layout<Output>(); }
+    OutputLayout output() const override
+    {
+        return output_layout<typename Shader::template Output<float>>();
+    }
 
     void run(ShaderBinding const& binding, VertexBatch const& batch, float* outputs,
              StageCounters& counters, StageBuffers const& buffers) const override

@@ -35,7 +35,7 @@ public:
                                              "vertex_cache", "overhead"};
         for (auto const& [key, value] : j_.items())
             if (std::find(std::begin(kKnown), std::end(kKnown), key) == std::end(kKnown))
-                fail("'" + key + "'", "is no number of a machine");
+                fail("'" + key + "'", "is no number of a GPU");
         m_.name = text("name");
         m_.about = text("about");
         if (j_.contains("clocks")) {
@@ -97,7 +97,7 @@ private:
         if (per == "second") return x;
         auto const it = clocks_.find(per);
         if (it == clocks_.end())
-            fail("'" + at + "'", "is per '" + per + "', which is no clock of the machine");
+            fail("'" + at + "'", "is per '" + per + "', which is no clock of the GPU");
         return x * it->second;
     }
     void rate(char const* key, double& out)
@@ -156,7 +156,7 @@ GpuModel load_gpu_model(std::string const& path_or_name)
         if (m.name == path_or_name) return parse_gpu_model(m.json, path_or_name);
         known += (known.empty() ? "" : ", ") + std::string(m.name);
     }
-    throw FormatError(path_or_name, 0, "no such file, and no built-in machine (" + known + ")");
+    throw FormatError(path_or_name, 0, "no such file, and no built-in GPU (" + known + ")");
 }
 
 } // namespace tessemu

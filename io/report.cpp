@@ -178,8 +178,9 @@ std::string sequence_report(ReportHeader const& header, std::vector<SequenceFram
     j["frames"] = Json::array();
     for (SequenceFrame const& f : frames) {
         Json frame{{"phase", f.phase}, {"upload_bytes", f.upload_bytes}};
-        frame["fetched_bytes"] = fetched_bytes(f.statistics);
-        add_statistics(frame, f.statistics);
+        frame["fetched_bytes"] = fetched_bytes(f.statistics.total);
+        add_statistics(frame, f.statistics.total);
+        add_commands(frame, f.statistics.commands);
         frame["target_sha256"] = f.target_sha256;
         j["frames"].push_back(std::move(frame));
     }
@@ -193,11 +194,11 @@ std::string sequence_table(std::vector<SequenceFrame> const& frames)
                     "upload bytes", "VS runs", "CS threads", "points", "pixels", "fetched bytes");
     for (std::size_t i = 0; i < frames.size(); ++i) {
         SequenceFrame const& f = frames[i];
-        PipelineStatistics const& p = f.statistics.pipeline;
+        PipelineStatistics const& p = f.statistics.total.pipeline;
         out += fmt::format("{:>5} {:>7.4f} {:>13} {:>12} {:>12} {:>11} {:>13} {:>16}\n", i, f.phase,
                            counted(f.upload_bytes), counted(p.VSInvocations),
                            counted(p.CSInvocations), counted(p.DSInvocations),
-                           counted(p.PSInvocations), counted(fetched_bytes(f.statistics)));
+                           counted(p.PSInvocations), counted(fetched_bytes(f.statistics.total)));
     }
     return out;
 }

@@ -40,11 +40,11 @@ std::string draw_report(ReportHeader const& header, Frame const& frame);
 struct SequenceFrame {
     double phase = 0;
     std::uint64_t upload_bytes = 0; ///< what an application sends for it: the pose
-    DrawStatistics statistics;
+    ListStatistics statistics;
     std::string target_sha256; ///< of colour and depth, as draw_report hashes them
 };
 std::string sha256_of_targets(ColorTarget const& color, DepthTarget const& depth);
-/// draw of several frames: "frames" with the counters of each.
+/// draw of several frames: "frames" with the counters and commands of each.
 std::string sequence_report(ReportHeader const& header, std::vector<SequenceFrame> const& frames);
 std::string sequence_table(std::vector<SequenceFrame> const& frames);
 

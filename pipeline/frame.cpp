@@ -117,7 +117,7 @@ SurfaceSettings surface_settings(FrameSettings const& s)
 SurfaceSettings seen_surface(FrameSettings const& s)
 {
     SurfaceSettings out = surface_settings(s);
-    out.finish.view_projection = view_projection(s.camera, float(s.width) / float(s.height));
+    out.view_projection = view_projection(s.camera, float(s.width) / float(s.height));
     return out;
 }
 

@@ -164,7 +164,7 @@ struct DisplacementEpilog {
     HeightMap height;
     float scale = 0; ///< displacement where the height is 1, object space
     OwnedCoordinates coordinates;
-    VertexFinish finish;
+    Matrix4 view_projection = kIdentity;
 
     std::vector<ResourceInfo> resources() const
     {
@@ -180,7 +180,7 @@ struct DisplacementEpilog {
         if (height.image.bound()) c = coordinates.template operator()<T>(in);
         T const h = T(scale) * height.template operator()<T>(s.position, c.owner);
         float3<T> const displaced = s.position + h * s.normal;
-        return {finish(displaced, s.normal), s.normal, s.position, c.own};
+        return {transform(view_projection, displaced), s.normal, s.position, c.own};
     }
 };
 

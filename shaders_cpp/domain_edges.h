@@ -1,5 +1,5 @@
-// Which edges of its patch a domain point lies on, and where: the one place that knows, for
-// shaders, checkers and whoever names points.
+// Which edges of its patch a domain point lies on, and where: the one place that knows, for shaders
+// and checkers. pipeline/mesh/patch_place.cpp names points of the mesh by the same edges.
 //
 //     quad   3 <-k=2-- 2        tri    2          edge k runs from corner k to corner k+1;
 //        k=3 |         ^            k=2| \ k=1    quad: u along edge 0, v along edge 3 backwards

@@ -26,48 +26,17 @@ template <class T> constexpr float4<T> transform(Matrix4 const& m, float3<T> con
     return {row(0), row(1), row(2), row(3)};
 }
 
-/// From a surface point to clip space, and two ways to make what is too small to be seen visible.
-struct VertexFinish {
-    Matrix4 view_projection = kIdentity;
-    /// Moves a point by so much along its normal, out or in by the parity of its bits: points that
-    /// differ in a last bit come apart.
-    float parity = 0;
-    /// Rounds x/w and y/w to multiples of 1/lattice, 0 for none: edges run through many samples.
-    std::array<float, 2> lattice{0, 0};
-
-    template <class T>
-    constexpr float4<T> operator()(float3<T> const& position, float3<T> const& normal) const
-    {
-        float3<T> p = position;
-        if (parity != 0) {
-            auto const bits = asuint(p.x) + asuint(p.y) + asuint(p.z);
-            using Int = int_of<T>;
-            T const by = select((bits & Int(1)) != Int(0), T(parity), T(-parity));
-            p = p + by * normal;
-        }
-        float4<T> const clip = transform(view_projection, p);
-        if (lattice[0] == 0) return clip;
-        T const inverse = T(1) / clip.w;
-        auto const snapped = [&](T const& x, float n) -> T {
-            T const scaled = T(n) * T(x * inverse);
-            return T(1 / n) * floor(T(scaled + T(0.5)));
-        };
-        return {snapped(clip.x, lattice[0]), snapped(clip.y, lattice[1]), T(clip.z * inverse),
-                T(1)};
-    }
-};
-
 /// The epilog of a surface's domain shader.
 struct ProjectionEpilog {
     template <class T> using Input = SurfacePoint<T>;
     template <class T> using Output = ShadedVertex<T>;
 
-    VertexFinish finish;
+    Matrix4 view_projection = kIdentity;
 
     template <class T>
     constexpr ShadedVertex<T> operator()(DomainInput<T> const&, SurfacePoint<T> const& s) const
     {
-        return {finish(s.position, s.normal), s.normal};
+        return {transform(view_projection, s.position), s.normal};
     }
 };
 

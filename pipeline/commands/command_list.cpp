@@ -22,6 +22,12 @@ DrawStatistics visit_grids(Draw const& d, PatchVisitor const& visit, ThreadPool 
     std::size_t const points = d.grid->patch.points(), patches = d.patches.size();
     GraphicsPipelineDesc desc = d.pipeline;
     auto const floats = std::size_t(output_of(desc).floats);
+    std::uint64_t const bytes = std::uint64_t(patches) * points * floats * sizeof(float);
+    if (bytes > 0xffffffffu) // a buffer's size is a 32-bit number
+        throw LimitError("size in bytes of the vertices that '" + d.name + "' streams out (" +
+                             std::to_string(patches) + " patches of " + std::to_string(points) +
+                             " points)",
+                         bytes, 0xffffffffu);
     desc.pixel_shader = nullptr;
     desc.stream_output.emplace();
     desc.stream_output->rasterized_stream = -1;
@@ -87,22 +93,21 @@ std::size_t CommandList::patches() const
 SurfacePatch::SurfacePatch(Draw const& draw, ShadedPatch const& patch)
     : draw_(&draw),
       patch_(patch),
-      floats_(std::size_t(output_of(draw.pipeline).floats))
+      layout_(output_of(draw.pipeline))
 {
 }
 
 SurfaceVertex SurfacePatch::vertex(std::size_t i) const
 {
-    if (floats_ == std::size_t(scalar_count<DisplacedVertex<float>>())) {
+    if (layout_.holds<DisplacedVertex<float>>()) {
         auto const v = load_column<DisplacedVertex<float>>(patch_.outputs + i, patch_.stride);
         return {{v.position.x, v.position.y, v.position.z},
                 as_vector(v.normal),
                 as_vector(v.base),
                 {v.coordinates.x, v.coordinates.y}};
     }
-    if (floats_ != std::size_t(scalar_count<ShadedVertex<float>>()))
-        throw Error("the draw '" + draw_->name + "' gives " + std::to_string(floats_) +
-                    " scalars a vertex: it is no surface's");
+    if (!layout_.holds<ShadedVertex<float>>())
+        throw Error("the draw '" + draw_->name + "' writes vertices that are no surface's");
     auto const v = load_column<ShadedVertex<float>>(patch_.outputs + i, patch_.stride);
     glm::vec3 const p(v.position.x, v.position.y, v.position.z);
     return {p, as_vector(v.normal), p};
@@ -110,8 +115,8 @@ SurfaceVertex SurfacePatch::vertex(std::size_t i) const
 
 std::vector<float> SurfacePatch::scalars(std::size_t i) const
 {
-    std::vector<float> out(floats_);
-    for (std::size_t k = 0; k < floats_; ++k) out[k] = patch_.outputs[k * patch_.stride + i];
+    std::vector<float> out(std::size_t(layout_.floats));
+    for (std::size_t k = 0; k < out.size(); ++k) out[k] = patch_.outputs[k * patch_.stride + i];
     return out;
 }
 

@@ -43,7 +43,7 @@ struct Draw {
     DrawCall call;
     std::vector<StreamOutputBuffer> stream_output = {};
     std::optional<RasterizerState> rasterizer = {}; ///< instead of the target's
-    /// Those that do not belong to a run: cache, memory, progress and streams are overwritten.
+    /// Of these, cache, memory, progress and streams are the run's and are overwritten.
     DrawOptions options = {};
 
     // Of a draw that shows patches.
@@ -105,7 +105,8 @@ public:
     DomainPoints const& domain() const { return *patch_.points; }
     std::size_t points() const { return patch_.points->patch.points(); }
     std::vector<std::uint32_t> const& triangles() const { return patch_.points->patch.indices; }
-    /// Of a draw whose transform was the identity. Throws Error for records of another kind.
+    /// Of a draw whose transform was the identity. Throws Error where the draw writes neither
+    /// ShadedVertex nor DisplacedVertex records.
     SurfaceVertex vertex(std::size_t i) const;
     /// The whole record that the last stage before the rasterizer wrote.
     std::vector<float> scalars(std::size_t i) const;
@@ -113,7 +114,7 @@ public:
 private:
     Draw const* draw_;
     ShadedPatch patch_;
-    std::size_t floats_;
+    OutputLayout layout_;
 };
 
 using SurfaceVisitor = std::function<void(SurfacePatch const&)>;

@@ -151,7 +151,8 @@ PatchEpilog make_patch_epilog(ControlMesh const& mesh, std::span<PatchPlace cons
 {
     std::shared_ptr<Displacement const> const& displacement = settings.displacement;
     if (!displacement)
-        return {bind_domain_epilog(ProjectionEpilog{settings.finish}, settings.machine), {}};
+        return {bind_domain_epilog(ProjectionEpilog{settings.view_projection}, settings.machine),
+                {}};
     struct Memory {
         std::shared_ptr<Displacement const> displacement;
         std::vector<std::uint32_t> words;
@@ -160,7 +161,7 @@ PatchEpilog make_patch_epilog(ControlMesh const& mesh, std::span<PatchPlace cons
     DisplacementEpilog epilog;
     epilog.height = displacement->height_map();
     epilog.scale = displacement->scale();
-    epilog.finish = settings.finish;
+    epilog.view_projection = settings.view_projection;
     if (!displacement->corners().empty() && !patches.empty()) {
         memory->words = patch_words(mesh, *displacement, patches);
         epilog.coordinates.sides = patches[0].sides;

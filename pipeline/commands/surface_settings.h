@@ -21,7 +21,7 @@ struct SurfaceSettings {
     bool true_normals = false; ///< interior normals of the rational surface, not of frozen F
     std::shared_ptr<Displacement const> displacement; ///< none: the smooth surface
     std::shared_ptr<Pose const> pose;                 ///< none: the mesh at rest
-    VertexFinish finish;                              ///< from the surface to clip space
+    Matrix4 view_projection = kIdentity;              ///< from object space to clip space
 
     TessFactorRule factor_rule() const
     {

@@ -35,9 +35,8 @@ VertexShader vertex_shader(SurfaceSettings const& s)
 
 } // namespace
 
-CageForm::CageForm(std::shared_ptr<RefinedMesh const> refined, Surface surface)
+CageForm::CageForm(std::shared_ptr<RefinedMesh const> refined)
     : PatchMesh(std::move(refined)),
-      surface_(std::move(surface)),
       groups_{{{"triangle", PatchClass::Triangle}, 3, {}, {}},
               {{"quad", PatchClass::IrregularQuad}, 4, {}, {}}}
 {
@@ -75,7 +74,7 @@ CommandList CageForm::commands(SurfaceSettings const& s) const
                         g.patches,
                         vertex_shader(s),
                         hull,
-                        surface_(g.sides, s)},
+                        domain_shader(g.sides, s)},
                        s);
     }
     return list;

@@ -1,5 +1,5 @@
 // The cage form of a scheme: a patch for each face, its control points the face's vertices with
-// their normals. A scheme says how its domain shader makes a surface of them.
+// their normals. A scheme derives from it and says how its domain shader makes a surface of them.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -14,18 +14,19 @@ namespace tessemu {
 /// \cost linear in the faces
 std::vector<glm::vec3> vertex_normals(ControlMesh const& mesh);
 
-class CageForm final : public PatchMesh {
+class CageForm : public PatchMesh {
 public:
-    /// The domain shader of patches with so many sides; gives SurfacePoints of NormalVertex
-    /// patches.
-    using Surface = std::function<DomainShader(int sides, SurfaceSettings const&)>;
+    CommandList commands(SurfaceSettings const& settings) const final;
+    std::vector<PatchCount> patch_counts() const final;
+    std::vector<std::string> warnings() const final { return warnings_; }
 
+protected:
     /// \param mesh  of triangles and quads
-    CageForm(std::shared_ptr<RefinedMesh const> mesh, Surface surface);
+    explicit CageForm(std::shared_ptr<RefinedMesh const> mesh);
 
-    CommandList commands(SurfaceSettings const& settings) const override;
-    std::vector<PatchCount> patch_counts() const override;
-    std::vector<std::string> warnings() const override { return warnings_; }
+    /// What a scheme says: of patches with so many sides, from NormalVertex patches to
+    /// SurfacePoints.
+    virtual DomainShader domain_shader(int sides, SurfaceSettings const& settings) const = 0;
 
 private:
     struct Group {
@@ -34,7 +35,6 @@ private:
         std::vector<PatchPlace> patches;
         std::vector<std::uint32_t> indices;
     };
-    Surface surface_;
     std::vector<float> vertices_; // position and normal, six floats each
     Group groups_[2];             // triangles, quads
     std::vector<std::string> warnings_;

@@ -15,10 +15,12 @@ namespace tessemu {
 
 /// How the surface meets the mesh's boundary (OpenSubdiv's interpolateboundary).
 enum class BoundaryRule {
-    None = 0, ///< faces at the boundary are not drawn
-    EdgeAndCorner =
-        1,        ///< the boundary is a curve, a vertex with one face is interpolated (LOOP09 4.6)
-    EdgeOnly = 2, ///< the boundary curve is smooth through such vertices too
+    /// Faces at the boundary are not drawn.
+    None = 0,
+    /// The boundary is a curve, a vertex with one face is interpolated (LOOP09 4.6).
+    EdgeAndCorner = 1,
+    /// The boundary curve is smooth through such vertices too.
+    EdgeOnly = 2,
 };
 
 struct ControlMesh {

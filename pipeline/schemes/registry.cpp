@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/schemes/scheme.h"
 
-#include "pipeline/mesh/catmull_clark.h"
-
 #include <algorithm>
 #include <charconv>
 
@@ -44,8 +42,15 @@ std::string in_words(MeshRequirements const& t)
     std::string s = t.quads && t.triangles ? "quads and triangles"
                     : t.quads              ? "quads"
                                            : "triangles";
+    auto const after = [](int steps) {
+        return " after " + std::to_string(steps) + (steps == 1 ? " step" : " steps") +
+               " of subdivision";
+    };
+    if (t.steps)
+        s += "," + after(t.steps);
+    else if (t.quads && t.steps_with_polygons)
+        s += ", larger faces" + after(t.steps_with_polygons);
     if (!t.boundary) s += ", closed meshes only";
-    if (t.steps) s += ", after " + std::to_string(t.steps) + " steps of subdivision";
     if (!t.creases && !t.corners)
         s += "; creases and corners are drawn smooth";
     else if (!t.creases || !t.corners)
@@ -127,7 +132,7 @@ MeshFacts facts_of(Topology const& topology)
 
 int steps_of(MeshRequirements const& t, bool polygons, int subdivide)
 {
-    return std::max(subdivide, polygons ? t.steps_with_polygons : t.steps);
+    return subdivide + (polygons ? t.steps_with_polygons : t.steps);
 }
 
 bool takes(MeshRequirements const& t, MeshFacts const& m, int subdivide)
@@ -152,7 +157,10 @@ void refuse(SchemeInfo const& info, MeshFacts const& m, int subdivide)
     };
     char const* const good = info.takes.quads ? "quads" : "triangles";
     if (steps_of(info.takes, m.polygons > 0, subdivide) > 0) {
-        if (!info.takes.quads) sides(good, "quads after subdivision", m.faces, 0);
+        if (!info.takes.quads)
+            throw MeshError(0, info.name + " draws " + good + " only: a step of subdivision makes" +
+                                   " quads of all " + std::to_string(m.faces) +
+                                   " faces, the first is face 1" + help);
     } else {
         if (!info.takes.triangles && m.triangles)
             sides(good, "triangles", m.triangles, m.first_triangle);
@@ -193,17 +201,17 @@ SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions c
         largest = std::max(largest, mesh.face(f).size());
         polygons += mesh.face(f).size() > 4;
     }
-    int const steps = steps_of(info.takes, polygons > 0, options.subdivide);
-    bool const split = polygons && options.subdivide == 0 && steps > 0;
-    out.mesh = std::make_shared<RefinedMesh const>(std::move(mesh), steps, catmull_clark_step,
-                                                   steps_of(info.takes, polygons > 0, 0));
+    int const own = steps_of(info.takes, polygons > 0, 0);
+    refuse(info, facts_of(Topology(mesh)), options.subdivide); // before the work
+    out.mesh = std::make_shared<RefinedMesh const>(std::move(mesh), own + options.subdivide,
+                                                   info.takes.step, own);
     RefinedMesh const& refined = *out.mesh;
-    if (split)
+    if (polygons && own > 0)
         out.warnings.push_back(std::to_string(polygons) + " faces have more than 4 sides (up to " +
                                std::to_string(largest) + "): one Catmull-Clark step makes " +
-                               std::to_string(refined.mesh().faces()) + " quads of the mesh's " +
-                               std::to_string(refined.base().faces()) + " faces");
-    refuse(info, facts_of(refined.base_topology()), options.subdivide);
+                               std::to_string(refined.reference().faces()) +
+                               " quads of the mesh's " + std::to_string(refined.base().faces()) +
+                               " faces");
     out.patches = scheme.build(out.mesh, out.parameters);
     std::vector<std::string> const more = out.patches->warnings();
     out.warnings.insert(out.warnings.end(), more.begin(), more.end());

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "pipeline/commands/patch_mesh.h"
+#include "pipeline/mesh/catmull_clark.h"
 
 #include <limits>
 #include <map>
@@ -48,6 +49,7 @@ struct MeshRequirements {
     /// Steps of subdivision that the scheme asks for: of a mesh of triangles and quads, and where a
     /// face has more sides.
     int steps = 0, steps_with_polygons = 1;
+    RefinementStep step = catmull_clark_step;
 };
 
 struct SchemeInfo {
@@ -92,7 +94,7 @@ struct SchemeOnMesh {
 };
 
 struct BuildOptions {
-    int subdivide = 0; ///< steps of subdivision before the scheme, 0 to 6
+    int subdivide = 0; ///< steps of subdivision beyond those that the scheme asks for, 0 to 6
     ParameterTexts set = {};
 };
 

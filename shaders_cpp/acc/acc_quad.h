@@ -1,7 +1,7 @@
 // Approximate Catmull-Clark patch (ACC, Loop and Schaefer 2008): a bicubic for the position and two
 // tangent patches for the normal; docs/math/loop09.md, 5.
 //
-//     b03--b13--b23--b33     v     Control points as a Gregory quad's, p 0..3, e+ 4..7, e- 8..11,
+//     b03--b13--b23--b33     v     Control points corner by corner, p 0..3, e+ 4..7, e- 8..11,
 //      |    |    |    |      |     inner 12..15 by corner; then the corners' tangents towards the
 //     b02--b12--b22--b32     +-u   next corner, t+ 16..19, and towards the previous, t- 20..23;
 //      |    |    |    |            24 holds the corners' cosines divided by 3.

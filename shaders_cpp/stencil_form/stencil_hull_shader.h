@@ -39,8 +39,8 @@ template <TessellatorDomain kDomain_, class Weight = float> struct StencilHullSh
 
     int points = 20;        ///< output control points that are sums
     Buffer<Weight> weights; ///< [type][input][row], then the type's constants
-    Buffer<std::uint32_t>
-        zero_masks;                ///< [type][row]: bit i set where the weight of input i is not 0
+    /// [type][row]: bit i is set where the weight of input i is not 0.
+    Buffer<std::uint32_t> zero_masks;
     Buffer<std::uint32_t> patches; ///< [patch][StencilPatchWords]
     Buffer<std::uint8_t> order;    ///< [patch][k]: inputs in ascending global vertex id
     TessFactorRule factors;

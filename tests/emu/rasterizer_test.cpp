@@ -179,7 +179,7 @@ RC_GTEST_PROP(Rasterizer, ATriangulationWritesEverySampleOnce, ())
     RC_ASSERT(s.statistics.PSInvocations == std::uint64_t(kSize * kSize));
 }
 
-// The example of the rule book: 36 pixels, each once, in both orientations of the second triangle.
+// Direct3D's own example: 36 pixels, each once, in both orientations of the second triangle.
 TEST(Rasterizer, TwoTrianglesOnOneEdgeCoverThirtySixPixels)
 {
     std::array<float, 4> const p[4] = {{0.5f, 0.49993896484375f, 0.5f, 1},

@@ -266,11 +266,11 @@ struct GridComputeShader {
 struct ShowPoint {
     template <class T> using Input = SurfacePoint<T>;
     template <class T> using Output = ShadedVertex<T>;
-    VertexFinish finish;
+    Matrix4 view_projection;
     template <class T>
     ShadedVertex<T> operator()(VertexInput<T> const&, SurfacePoint<T> const& p) const
     {
-        return {finish(p.position, p.normal), p.normal};
+        return {transform(view_projection, p.position), p.normal};
     }
 };
 
@@ -323,7 +323,7 @@ public:
         cs.domain = {memory->domain, 1, "domain"};
         cs.points = {memory->points, 2, "points"};
         cs.count = int(points);
-        d.pipeline.vertex_shader = bind_vertex_shader(ShowPoint{s.finish}, s.machine);
+        d.pipeline.vertex_shader = bind_vertex_shader(ShowPoint{s.view_projection}, s.machine);
         d.call.topology = PrimitiveTopology::TriangleList;
         d.call.set_vertices(memory->points, 6);
         d.call.indices = std::span<std::uint32_t const>(memory->indices);

@@ -2,12 +2,17 @@
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "io/model.h"
+#include "pipeline/colored_mesh.h"
+#include "pipeline/forms/cage_form.h"
 #include "pipeline/frame.h"
+#include "pipeline/mesh/builtin_models.h"
 #include "pipeline/schemes/scheme.h"
+#include "shaders_cpp/pixel/id_view.h"
 #include "tests/support/machines.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <set>
 
@@ -20,17 +25,23 @@ struct Bytes {
     std::vector<CommandStatistics> commands;
 };
 
+Bytes bytes_of(ColorTarget const& color, DepthTarget const& depth, FrameSettings const& s,
+               DrawStatistics const& statistics, std::vector<CommandStatistics> const& commands)
+{
+    Bytes out{{}, statistics, commands};
+    for (int y = 0; y < s.height; ++y) {
+        out.pixels.append(reinterpret_cast<char const*>(color.texel(0, y)), color.row_bytes());
+        out.pixels.append(reinterpret_cast<char const*>(depth.codes() + depth.index(0, y)),
+                          std::size_t(s.width * s.samples) * 4);
+    }
+    return out;
+}
+
 Bytes draw_bytes(PatchMesh const& patches, FrameSettings s, int threads, Machine const& machine)
 {
     s.machine = machine;
     Frame const f = draw_frame(patches, s, ThreadPool(threads));
-    Bytes out{{}, f.statistics, f.commands};
-    for (int y = 0; y < s.height; ++y) {
-        out.pixels.append(reinterpret_cast<char const*>(f.color.texel(0, y)), f.color.row_bytes());
-        out.pixels.append(reinterpret_cast<char const*>(f.depth.codes() + f.depth.index(0, y)),
-                          std::size_t(s.width * s.samples) * 4);
-    }
-    return out;
+    return bytes_of(f.color, f.depth, s, f.statistics, f.commands);
 }
 
 FrameSettings settings_for(SchemeOnMesh const& m)
@@ -74,14 +85,14 @@ TEST(Determinism, PictureAndCountersDoNotDependOnThreadsLanesOrForm)
         }
 }
 
-// The checking machine is compiled apart from the fast one, from the same text: each is the other's
-// oracle, for every stage of every scheme and for all that a frame can ask for.
-TEST(Determinism, TheCheckingMachineHasTheFastOnesBitsAndCountsInEveryStageOfEveryScheme)
+struct Variant {
+    std::string name;
+    std::function<void(FrameSettings&)> set;
+};
+
+// All that a frame can ask for.
+std::vector<Variant> frame_variants()
 {
-    struct Variant {
-        std::string name;
-        std::function<void(FrameSettings&)> set;
-    };
     std::vector<Variant> variants;
     for (View view : kViews)
         variants.push_back({std::string(name_of(view)), [=](FrameSettings& s) { s.view = view; }});
@@ -98,21 +109,67 @@ TEST(Determinism, TheCheckingMachineHasTheFastOnesBitsAndCountsInEveryStageOfEve
                             s.adaptive = {AdaptiveFactors::Kind::Distance, 2.5f};
                         }});
     variants.push_back({"direct3d10", [](FrameSettings& s) { s.direct3d10 = true; }});
-    variants.push_back({"parity", [](FrameSettings& s) { s.finish.parity = 0.01f; }});
+    return variants;
+}
 
+struct Cage {
+    std::string name;
+    ControlMesh mesh;
+};
+
+// Quads, triangles and both, with and without a boundary.
+std::vector<Cage> cages()
+{
+    std::vector<Cage> out;
+    for (BuiltinModel const& model : builtin_models())
+        out.push_back({std::string(model.name), load_model(std::string(model.name)).mesh});
+    out.push_back({"open spindle", load_model("spindle").mesh}); // without its last triangle
+    ControlMesh& open = out.back().mesh;
+    open.face_start.pop_back();
+    open.face_vertices.resize(open.face_start.back());
+    return out;
+}
+
+void expect_equal_on_all_machines(PatchMesh const& patches, FrameSettings const& s,
+                                  std::set<std::string>& stages)
+{
+    std::vector<Machine> const machines = test::machines();
+    Bytes const first = draw_bytes(patches, s, 1, machines[0]);
+    EXPECT_GT(first.statistics.pipeline.PSInvocations, 0u);
+    for (StageStatistics const& stage : first.statistics.stages) stages.insert(stage.stage);
+    for (std::size_t i = 1; i < machines.size(); ++i) {
+        SCOPED_TRACE(testing::PrintToString(machines[i]));
+        expect_equal(first, draw_bytes(patches, s, 2, machines[i]));
+        if (testing::Test::HasFatalFailure()) return;
+    }
+}
+
+// The checking machine is compiled apart from the fast one, from the same text: each is the other's
+// oracle, for every stage of every scheme and for all that a frame can ask for. A scheme has
+// shaders for each kind of patch, with branches for boundaries: every cage is drawn that shows a
+// kind which the cages before it did not show, or show with a boundary.
+TEST(Determinism, TheCheckingMachineHasTheFastOnesBitsAndCountsInEveryStageOfEveryScheme)
+{
     constexpr char const* kStages[] = {"input_assembler", "vertex_shader",   "hull_shader",
                                        "domain_shader",   "geometry_shader", "pixel_shader",
                                        "compute_shader"};
     std::set<std::string> stages;
-    for (auto const& scheme : schemes())
-        for (char const* model : {"golem", "spindle"}) {
+    for (auto const& scheme : schemes()) {
+        std::set<std::pair<std::string, bool>> shown; // kind of patch, on an open mesh
+        std::set<std::size_t> sides;
+        for (Cage const& cage : cages()) {
             SchemeOnMesh m;
             try {
-                m = build_scheme(*scheme, load_model(model).mesh);
-            } catch (MeshError const&) { // one of the two it draws, see schemes_test.cpp
+                m = build_scheme(*scheme, cage.mesh);
+            } catch (MeshError const&) { // does not take it, see schemes_test.cpp
                 continue;
             }
-            if (std::string(model) == "spindle" && scheme->info().takes.quads) continue;
+            bool const open = summarize(m.mesh->topology()).boundary_edges > 0;
+            std::size_t const before = shown.size();
+            for (PatchCount const& c : m.patches->patch_counts()) shown.insert({c.kind.name, open});
+            if (shown.size() == before) continue;
+            for (std::size_t f = 0; f < m.mesh->mesh().faces(); ++f)
+                sides.insert(m.mesh->mesh().face(f).size());
             std::shared_ptr<Displacement const> maps[] = {
                 nullptr, std::make_shared<Displacement>(Displacement::studs(0.2f, 0.05f)), nullptr};
             if (!m.mesh->base().coordinates.empty()) {
@@ -121,7 +178,7 @@ TEST(Determinism, TheCheckingMachineHasTheFastOnesBitsAndCountsInEveryStageOfEve
                 maps[2] = std::make_shared<Displacement>(m.mesh->base_topology(), image, 0.05f);
             }
             auto const pose = std::make_shared<Pose>(SpineRig(m.mesh->mesh()).sway(0.3));
-            for (Variant const& v : variants)
+            for (Variant const& v : frame_variants())
                 for (auto const& map : maps)
                     for (bool moved : {false, true}) {
                         if (!map && &map != maps) continue;
@@ -129,20 +186,119 @@ TEST(Determinism, TheCheckingMachineHasTheFastOnesBitsAndCountsInEveryStageOfEve
                         s.displacement = map;
                         if (moved) s.pose = pose;
                         v.set(s);
-                        SCOPED_TRACE(scheme->info().name + " on " + model + ", " + v.name +
+                        SCOPED_TRACE(scheme->info().name + " on " + cage.name + ", " + v.name +
                                      (map ? ", displaced" : "") + (moved ? ", in a pose" : ""));
-                        std::vector<Machine> const machines = test::machines();
-                        Bytes const first = draw_bytes(*m.patches, s, 1, machines[0]);
-                        EXPECT_GT(first.statistics.pipeline.PSInvocations, 0u);
-                        for (StageStatistics const& stage : first.statistics.stages)
-                            stages.insert(stage.stage);
-                        for (std::size_t i = 1; i < machines.size(); ++i) {
-                            expect_equal(first, draw_bytes(*m.patches, s, 2, machines[i]));
-                            if (HasFatalFailure()) return;
-                        }
+                        expect_equal_on_all_machines(*m.patches, s, stages);
+                        if (HasFatalFailure()) return;
                     }
         }
+        SchemeInfo const info = scheme->info();
+        EXPECT_FALSE(shown.empty()) << info.name << " takes no cage";
+        EXPECT_EQ(sides.count(3) > 0, info.takes.triangles) << info.name;
+        EXPECT_EQ(sides.count(4) > 0, info.takes.quads) << info.name;
+        EXPECT_EQ(std::any_of(shown.begin(), shown.end(), [](auto const& s) { return s.second; }),
+                  info.takes.boundary)
+            << info.name;
+    }
     for (char const* stage : kStages) EXPECT_EQ(stages.count(stage), 1u) << stage;
+}
+
+// No scheme draws quads in cage form.
+struct BilinearQuad {
+    static constexpr TessellatorDomain kDomain = TessellatorDomain::Quad;
+    static constexpr int kControlPoints = 4;
+    template <class T> using ControlPoint = NormalVertex<T>;
+    template <class T> using PatchConstant = ControlVertex<T>;
+    template <class T> using Output = SurfacePoint<T>;
+    template <class T>
+    SurfacePoint<T> operator()(DomainInput<T> const& in,
+                               ControlPoints<NormalVertex<T>> const& patch,
+                               ControlPoints<ControlVertex<T>> const&) const
+    {
+        NormalVertex<T> const a = patch[0], b = patch[1], c = patch[2], d = patch[3];
+        T const U = T(1) - in.u, V = T(1) - in.v;
+        float3<T> const p = V * float3<T>(U * a.position + in.u * b.position) +
+                            in.v * float3<T>(U * d.position + in.u * c.position);
+        float3<T> const n = V * float3<T>(U * a.normal + in.u * b.normal) +
+                            in.v * float3<T>(U * d.normal + in.u * c.normal);
+        return {p, unit_or_zero(n)};
+    }
+};
+
+class BilinearQuads final : public CageForm {
+public:
+    explicit BilinearQuads(std::shared_ptr<RefinedMesh const> mesh) : CageForm(std::move(mesh)) {}
+
+private:
+    DomainShader domain_shader(int, SurfaceSettings const& s) const override
+    {
+        return bind_domain_shader(BilinearQuad{}, s.machine);
+    }
+};
+
+TEST(Determinism, TheCheckingMachineHasTheFastOnesBitsAndCountsOnQuadsInCageForm)
+{
+    SchemeOnMesh const m = build_scheme(find_scheme("gregory-stencil"), load_model("golem").mesh);
+    BilinearQuads const quads(m.mesh);
+    std::set<std::string> stages;
+    for (Variant const& v : frame_variants())
+        for (bool moved : {false, true}) {
+            FrameSettings s = settings_for(m);
+            if (moved) s.pose = std::make_shared<Pose>(SpineRig(m.mesh->mesh()).sway(0.3));
+            v.set(s);
+            SCOPED_TRACE(v.name + (moved ? ", in a pose" : ""));
+            expect_equal_on_all_machines(quads, s, stages);
+            if (HasFatalFailure()) return;
+        }
+}
+
+// Of pictures that are no scheme's: which patch a pixel shows, by number, and meshes with colours
+// of their own.
+TEST(Determinism, TheCheckingMachineHasTheFastOnesBitsAndCountsInNumbersAndColoredMeshes)
+{
+    ThreadPool const threads(2);
+    for (Cage const& cage : cages()) {
+        SchemeOnMesh const m = build_scheme(find_scheme("gregory-stencil"), cage.mesh);
+        ColoredMesh const colored = control_mesh_picture(m.mesh->topology());
+        FrameSettings s = settings_for(m);
+        auto const numbers = [&](Machine const& machine) -> Bytes {
+            ColorTarget color(s.width, s.height, Format::R32G32B32A32_FLOAT, s.samples);
+            DepthTarget depth(s.width, s.height, Format::D32_FLOAT, s.samples);
+            color.clear({-1, -1, -1, -1}, threads);
+            depth.clear(1, 0, threads);
+            RasterTarget raster{{&color}, &depth, {{0, 0, float(s.width), float(s.height), 0, 1}}};
+            s.machine = machine;
+            CommandList list = m.patches->commands(seen_surface(s));
+            float draws = 0;
+            list.for_each_surface_draw([&](Draw& d) {
+                d.pipeline.pixel_shader = bind_pixel_shader(IdPixelShader{draws}, machine);
+                ++draws;
+            });
+            CommandOptions options;
+            options.raster = &raster;
+            ListStatistics const counted = run_commands(list, threads, options);
+            return bytes_of(color, depth, s, counted.total, counted.commands);
+        };
+        auto const picture = [&](Machine const& machine) -> Bytes {
+            s.machine = machine;
+            Frame frame(s);
+            draw_colored_mesh(colored, s, 0.7f, threads, frame);
+            return bytes_of(frame.color, frame.depth, s, frame.statistics, frame.commands);
+        };
+        for (int samples : {1, 4}) {
+            s.samples = samples;
+            std::vector<Machine> const machines = test::machines();
+            Bytes const first[] = {numbers(machines[0]), picture(machines[0])};
+            for (Bytes const& b : first) EXPECT_GT(b.statistics.pipeline.PSInvocations, 0u);
+            for (std::size_t i = 1; i < machines.size(); ++i) {
+                SCOPED_TRACE(cage.name + ", " + std::to_string(samples) + " samples, " +
+                             testing::PrintToString(machines[i]));
+                expect_equal(first[0], numbers(machines[i]));
+                expect_equal(first[1], picture(machines[i]));
+                if (HasFatalFailure()) return;
+            }
+        }
+    }
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include "io/model.h"
 #include "pipeline/frame.h"
 #include "pipeline/schemes/scheme.h"
+#include "tests/support/cages.h"
 
 #include <gtest/gtest.h>
 
@@ -15,9 +16,15 @@
 namespace tessemu {
 namespace {
 
-SchemeOnMesh load(char const* model, char const* scheme)
+// work(patches) for every scheme on every built-in cage that it takes.
+template <class Work> void for_each_case(Work&& work)
 {
-    return build_scheme(find_scheme(scheme), load_model(model).mesh);
+    for (auto const& scheme : schemes())
+        for (std::string const& cage : test::cages_of(*scheme)) {
+            SCOPED_TRACE(scheme->info().name + " on " + cage);
+            work(build_scheme(*scheme, load_model(cage).mesh));
+            if (testing::Test::HasFatalFailure()) return;
+        }
 }
 
 // Everything that the domain shader wrote, patch by patch.
@@ -41,14 +48,9 @@ StageStatistics stage(DrawStatistics const& d, std::string const& name)
     return {};
 }
 
-constexpr std::pair<char const*, char const*> kCases[] = {
-    {"jug", "gregory-stencil"},       {"spindle", "gregory-stencil"}, {"jug", "gregory-two-stage"},
-    {"spindle", "gregory-two-stage"}, {"saddle_star", "acc"},         {"spindle", "pm"}};
-
 TEST(Direct3D10, GivesEverySchemesSurfaceBitForBit)
 {
-    for (auto const& [model, scheme] : kCases) {
-        SchemeOnMesh const m = load(model, scheme);
+    for_each_case([](SchemeOnMesh const& m) {
         for (Contraction contraction : {Contraction::None, Contraction::Mixed})
             for (bool moved : {false, true}) {
                 FrameSettings s;
@@ -63,15 +65,14 @@ TEST(Direct3D10, GivesEverySchemesSurfaceBitForBit)
                 auto const eleven = surface(m, s);
                 s.direct3d10 = true;
                 ASSERT_FALSE(eleven.empty());
-                ASSERT_EQ(surface(m, s), eleven) << model << " " << scheme;
+                ASSERT_EQ(surface(m, s), eleven);
             }
-    }
+    });
 }
 
 TEST(Direct3D10, DrawsTheSamePicture)
 {
-    for (auto const& [model, scheme] : kCases) {
-        SchemeOnMesh const m = load(model, scheme);
+    for_each_case([](SchemeOnMesh const& m) {
         FrameSettings s;
         s.width = s.height = 200;
         s.tess_factor = 3;
@@ -84,20 +85,19 @@ TEST(Direct3D10, DrawsTheSamePicture)
             ASSERT_EQ(std::memcmp(eleven.color.texel(0, y), ten.color.texel(0, y),
                                   eleven.color.row_bytes()),
                       0)
-                << model << " " << scheme << " row " << y;
+                << "row " << y;
         EXPECT_EQ(ten.statistics.pipeline.HSInvocations, 0u);
         EXPECT_EQ(ten.statistics.pipeline.DSInvocations, 0u);
         EXPECT_EQ(ten.statistics.pipeline.CPrimitives, eleven.statistics.pipeline.CPrimitives);
         EXPECT_EQ(ten.statistics.pipeline.PSInvocations, eleven.statistics.pipeline.PSInvocations);
-    }
+    });
 }
 
 // The same operations in other stages: the hull shader's in the geometry shader, the domain
 // shader's in the vertex shader; and the same reads of control points, from a buffer.
 TEST(Direct3D10, MovesTheCostsToOtherStages)
 {
-    for (auto const& [model, scheme] : kCases) {
-        SchemeOnMesh const m = load(model, scheme);
+    for_each_case([](SchemeOnMesh const& m) {
         FrameSettings s;
         s.tess_factor = 4;
         s.vertex_cache = vertex_cache_from_name("infinite");
@@ -119,7 +119,7 @@ TEST(Direct3D10, MovesTheCostsToOtherStages)
         for (char const* name : {"control_points", "patch_constants"})
             EXPECT_EQ(reads(stage(ten, "vertex_shader"), name),
                       reads(stage(eleven, "domain_shader"), name))
-                << model << " " << scheme << " " << name;
+                << name;
         EXPECT_EQ(reads(stage(ten, "geometry_shader"), "vertices"),
                   reads(stage(eleven, "hull_shader"), "input_control_points"));
         // What was streamed out is the patches' control points and constants.
@@ -130,12 +130,12 @@ TEST(Direct3D10, MovesTheCostsToOtherStages)
                         sizeof(float);
         });
         EXPECT_EQ(stage(ten, "stream_output").output_bytes, streamed);
-    }
+    });
 }
 
 TEST(Direct3D10, RefusesAdaptiveFactors)
 {
-    SchemeOnMesh const m = load("jug", "gregory-stencil");
+    SchemeOnMesh const m = build_scheme(find_scheme("gregory-stencil"), load_model("jug").mesh);
     FrameSettings s;
     s.direct3d10 = true;
     s.adaptive.kind = AdaptiveFactors::Kind::Pixels;

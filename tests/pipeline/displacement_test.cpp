@@ -5,22 +5,23 @@
 
 #include "io/model.h"
 #include "pipeline/schemes/scheme.h"
+#include "tests/support/cages.h"
 #include "tests/support/edges.h"
-#include "tests/support/files.h"
 
 #include <gtest/gtest.h>
 
 namespace tessemu {
 namespace {
 
-void expect_closed_displaced(std::string const& model, char const* scheme)
+void expect_closed_displaced(std::string const& model, std::string const& scheme)
 {
+    static HeightImage const image = test::noise(2048);
     ControlMesh mesh = load_model(model).mesh;
     test::add_charts(mesh);
     SchemeOnMesh const m = build_scheme(find_scheme(scheme), std::move(mesh));
     std::shared_ptr<Displacement const> const maps[] = {
         std::make_shared<Displacement>(Displacement::studs(0.1f, 0.05f)),
-        std::make_shared<Displacement>(m.mesh->base_topology(), test::noise(2048), 0.05f)};
+        std::make_shared<Displacement>(m.mesh->base_topology(), image, 0.05f)};
     for (Machine const& machine : test::contraction_policies())
         for (auto const& map : maps) {
             FrameSettings s;
@@ -37,14 +38,9 @@ void expect_closed_displaced(std::string const& model, char const* scheme)
 
 TEST(Displacement, EverySchemeStaysClosedAcrossTextureSeams)
 {
-    for (char const* scheme : {"gregory-stencil", "gregory-two-stage"})
-        for (char const* model : {"jug", "spindle", "saddle_star"})
-            expect_closed_displaced(model, scheme);
-    expect_closed_displaced("saddle_star", "acc");
-    expect_closed_displaced("spindle", "pm");
-    if (std::filesystem::exists(test::shared("models/bigguy.obj")))
-        for (char const* scheme : {"gregory-stencil", "gregory-two-stage", "acc", "pm"})
-            expect_closed_displaced(test::shared("models/bigguy.obj").string(), scheme);
+    for (auto const& scheme : schemes())
+        for (std::string const& model : test::models_of(*scheme))
+            expect_closed_displaced(model, scheme->info().name);
 }
 
 // Where every face has a chart of its own, each patch's own coordinates would tear the surface.

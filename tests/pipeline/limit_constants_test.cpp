@@ -1,3 +1,5 @@
+// Cosines of fractions of pi, and LOOP09's constants by valence.
+//
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/mesh/limit_constants.h"
 
@@ -25,7 +27,8 @@ TEST(CosPi, IsTheCosineToTwoUlp)
     EXPECT_EQ(cos_pi(1, 1), -1.0);
 }
 
-TEST(Loop09, LambdaAndSigmaAreTheSheetsValues)
+// The table of docs/math/loop09.md, 1.
+TEST(Loop09, LambdaAndSigmaAreThePagesValues)
 {
     struct {
         int n;

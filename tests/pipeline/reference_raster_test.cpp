@@ -31,7 +31,7 @@ void expect_same(Case const& c, int threads, Machine const& machine = {})
     settings.tess_factor = c.tess;
     settings.partitioning = c.partitioning;
     settings.machine = machine;
-    settings.finish.view_projection = view_projection(camera, 1);
+    settings.view_projection = view_projection(camera, 1);
     CommandList list = m.patches->commands(settings);
     std::vector<PixelShader> shaders; // of the draws, in order
     list.for_each_surface_draw([&](Draw& d) {

@@ -120,8 +120,7 @@ Sides sides_of(ControlMesh const& mesh)
 bool takes(MeshRequirements const& t, ControlMesh const& mesh, int subdivide)
 {
     Sides s = sides_of(mesh);
-    if (std::max(subdivide, s.polygons ? t.steps_with_polygons : t.steps) > 0)
-        s = {false, true, false};
+    if (subdivide + (s.polygons ? t.steps_with_polygons : t.steps) > 0) s = {false, true, false};
     bool const open = summarize(Topology(mesh)).boundary_edges > 0;
     return !s.polygons && (t.quads || !s.quads) && (t.triangles || !s.triangles) &&
            (t.boundary || !open);
@@ -216,12 +215,17 @@ TEST(Schemes, TagsThatAreNotHonouredAreWarnedOf)
 TEST(Schemes, RequirementsInWords)
 {
     MeshRequirements t;
+    EXPECT_EQ(in_words(t), "quads and triangles, larger faces after 1 step of subdivision; "
+                           "creases and corners are drawn smooth");
+    t.steps_with_polygons = 0;
     EXPECT_EQ(in_words(t), "quads and triangles; creases and corners are drawn smooth");
     t.triangles = t.boundary = false;
     t.creases = true;
     EXPECT_EQ(in_words(t), "quads, closed meshes only; corners are drawn smooth");
     t.corners = true;
     EXPECT_EQ(in_words(t), "quads, closed meshes only");
+    t.steps = 2;
+    EXPECT_EQ(in_words(t), "quads, after 2 steps of subdivision, closed meshes only");
 }
 
 } // namespace

@@ -131,8 +131,7 @@ TEST(Topology, RefusesAFaceThatNamesAVertexTwice)
               std::string::npos);
 }
 
-// Sheet math_subdivision 1.1: quads only after a step; the counts F' = sum of sides, V' = F + E +
-// V.
+// docs/math/subdivision.md, 1.1: quads only after a step; F' = sum of sides, V' = F + E + V.
 TEST(CatmullClark, SplitsEveryFaceAndKeepsTheLimit)
 {
     ControlMesh const m =

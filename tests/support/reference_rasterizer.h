@@ -1,8 +1,9 @@
 // The rasterizer of a reader: one triangle after another, pixel by pixel, in submission order.
 //
-// Written from the rule book (R90 to R135) for solid triangles with one sample: clip, divide,
-// viewport, snap, cull, exact edge functions, depth test, one run of the pixel shader per fragment
-// that passes. Shares no code with the library's rasterizers but the pixel shader.
+// Written from Direct3D's rules (docs/conformance.md, R90 to R135) for solid triangles with one
+// sample: clip, divide, viewport, snap, cull, exact edge functions, depth test, one run of the
+// pixel shader per fragment that passes. Shares no code with the library's rasterizers but the
+// pixel shader.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -189,8 +189,7 @@ TimingTable reproduce_loop09_table2(std::vector<ControlMesh> const& meshes, GpuM
         "Counted: both passes of the Direct3D 10 path without rasterization, whose share the paper "
         "does not tell. Every vertex of the pattern runs once, as the paper counts N x N.",
         "The paper's bigguy has 1754 patches, which is the number of its texture vertices; the "
-        "cage "
-        "has 1450 faces.",
+        "cage has 1450 faces.",
     };
     return out;
 }

@@ -9,6 +9,23 @@ namespace tessemu {
 
 namespace {
 
+class PhongPatches final : public CageForm {
+public:
+    PhongPatches(std::shared_ptr<RefinedMesh const> mesh, Parameters const& parameters)
+        : CageForm(std::move(mesh)),
+          alpha_(float(parameters.number("alpha")))
+    {
+    }
+
+private:
+    DomainShader domain_shader(int, SurfaceSettings const& s) const override
+    {
+        return bind_domain_shader(PhongTriangle{alpha_}, s.machine);
+    }
+
+    float alpha_;
+};
+
 class Phong final : public Scheme {
 public:
     SchemeInfo info() const override
@@ -24,10 +41,7 @@ public:
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
                                      Parameters const& parameters) const override
     {
-        float const alpha = float(parameters.number("alpha"));
-        return std::make_unique<CageForm>(std::move(mesh), [=](int, SurfaceSettings const& s) {
-            return bind_domain_shader(PhongTriangle{alpha}, s.machine);
-        });
+        return std::make_unique<PhongPatches>(std::move(mesh), parameters);
     }
 };
 

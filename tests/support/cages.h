@@ -1,0 +1,61 @@
+// Meshes for tests that run over all schemes.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "io/model.h"
+#include "pipeline/mesh/builtin_models.h"
+#include "pipeline/schemes/scheme.h"
+#include "tests/support/files.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace tessemu::test {
+
+/// Whether a scheme takes a model; a built-in's name, or a path.
+inline bool takes(Scheme const& scheme, std::string const& model)
+{
+    try {
+        build_scheme(scheme, load_model(model).mesh);
+    } catch (MeshError const&) { // tests/pipeline/schemes_test.cpp holds the scheme to its word
+        return false;
+    }
+    return true;
+}
+
+/// The built-in cages that a scheme takes, which are quads, triangles or both, open and closed. The
+/// test fails where there is none.
+inline std::vector<std::string> cages_of(Scheme const& scheme)
+{
+    std::vector<std::string> out;
+    for (BuiltinModel const& model : builtin_models())
+        if (takes(scheme, std::string(model.name))) out.emplace_back(model.name);
+    EXPECT_FALSE(out.empty()) << scheme.info().name << " takes no built-in cage";
+    return out;
+}
+
+/// And a model of more than a thousand faces, where the shared folder has one that it takes.
+inline std::vector<std::string> models_of(Scheme const& scheme)
+{
+    std::vector<std::string> out = cages_of(scheme);
+    for (char const* large : {"models/bigguy.obj", "models/knight_tri_1k.obj"})
+        if (std::filesystem::exists(shared(large)) && takes(scheme, shared(large).string())) {
+            out.push_back(shared(large).string());
+            break;
+        }
+    return out;
+}
+
+/// A cage without a boundary: quads where the scheme takes them, else triangles.
+inline std::string closed_cage_of(Scheme const& scheme)
+{
+    for (char const* model : {"golem", "spindle"})
+        if (takes(scheme, model)) return model;
+    ADD_FAILURE() << scheme.info().name << " takes no closed cage";
+    return "golem";
+}
+
+} // namespace tessemu::test
