@@ -408,7 +408,8 @@ std::unique_ptr<PatchMesh> with_mistake(PatchMesh const& patches, PlantedMistake
     CommandList const list = out->commands(surface_settings(frame));
     if (!out->planted(list))
         throw Error("the mistake '" + std::string(name_of(mistake.kind)) +
-                    "' has no place in the patches of face " + std::to_string(mistake.face + 1) +
+                    "' has no place in the patches of face " +
+                    std::to_string(patches.mesh().base().file_face(mistake.face) + 1) +
                     ": none is drawn, or the change drowns in rounding");
     return out;
 }

@@ -35,21 +35,24 @@ std::string hexadecimal(std::uint32_t bits)
 }
 
 // Where a site lies: its patches and its point.
-void set_place(CrackSite& site, MeshPoint const& p, std::uint32_t face, std::uint32_t other)
+void set_place(CrackSite& site, ControlMesh const& mesh, MeshPoint const& at, std::uint32_t face,
+               std::uint32_t other)
 {
-    site.face[0] = face;
-    site.face[1] = other;
+    MeshPoint const p = as_in_file(mesh, at);
+    site.face[0] = mesh.file_face(face);
+    site.face[1] = mesh.file_face(other);
     if (p.kind != MeshPoint::Kind::Face)
         site.vertex[0] = p.a, site.vertex[1] = p.kind == MeshPoint::Kind::Edge ? p.b : p.a;
     site.t = p.kind == MeshPoint::Kind::Edge ? p.t >> 9 : 0;
-    site.text = "patches of faces " + std::to_string(face + 1) + " and " +
-                std::to_string(other + 1) + ", " + in_words(p);
+    site.text = "patches of faces " + std::to_string(site.face[0] + 1) + " and " +
+                std::to_string(site.face[1] + 1) + ", " + in_words(p);
 }
 
 class Checker {
 public:
     Checker(PatchMesh const& patches, WatertightSettings const& settings, ThreadPool const& threads)
         : patches_(patches),
+          mesh_(patches.mesh().base()),
           s_(settings),
           threads_(threads),
           surface_(patches, settings.frame, settings.rays > 0, threads),
@@ -85,10 +88,18 @@ private:
         if (v.sites.size() < s_.list) v.sites.push_back(std::move(site));
     }
 
+    std::string not_compared() const
+    {
+        std::uint32_t const n = mesh_.cut_edges;
+        return n == 0   ? ""
+               : n == 1 ? "1 cut edge is not compared"
+                        : std::to_string(n) + " cut edges are not compared";
+    }
+
     // A point inside two patches' edges must be a point of both: otherwise one passes it by.
     CheckedVerdict topology() const
     {
-        CheckedVerdict v{"topology", Verdict::Pass, "", 0, 0, {}};
+        CheckedVerdict v{"topology", Verdict::Pass, not_compared(), 0, 0, {}};
         for (auto const& [name, line] : surface_.lines()) {
             std::vector<SharedEdges::OnLine> at = line.points;
             std::stable_sort(at.begin(), at.end(), [](auto const& x, auto const& y) {
@@ -110,7 +121,7 @@ private:
                     if (std::any_of(first, last, [&](auto const& p) { return p.patch == patch; }))
                         continue;
                     CrackSite site;
-                    set_place(site, at[i].point, surface_.face_of_patch(at[i].patch),
+                    set_place(site, mesh_, at[i].point, surface_.face_of_patch(at[i].patch),
                               surface_.face_of_patch(patch));
                     site.place = surface_.points().at(at[i].point)[0].displaced();
                     site.text += ": only the first has the point";
@@ -123,7 +134,7 @@ private:
 
     CheckedVerdict equal_bits(char const* name, std::size_t first) const
     {
-        CheckedVerdict v{name, Verdict::Pass, "", 0, 0, {}};
+        CheckedVerdict v{name, Verdict::Pass, not_compared(), 0, 0, {}};
         for (MeshPoint const* p : order_) {
             std::vector<SeenPoint> const& seen = surface_.points().at(*p);
             int patches = 0;
@@ -135,7 +146,7 @@ private:
                 while (c < first + 3 && seen[i].bits[c] == seen[0].bits[c]) ++c;
                 if (c == first + 3) continue;
                 CrackSite site;
-                set_place(site, *p, seen[0].face, seen[i].face);
+                set_place(site, mesh_, *p, seen[0].face, seen[i].face);
                 site.component = int(c - first);
                 site.bits[0] = seen[0].bits[c], site.bits[1] = seen[i].bits[c];
                 site.ulp = ulp_distance(site.bits[0], site.bits[1]);
@@ -225,9 +236,9 @@ private:
             control += c.control_misses;
             for (RayMiss const& m : c.confirmed) {
                 CrackSite site;
-                site.face[0] = site.face[1] = aim == RayAim::Segments
-                                                  ? surface_.face_of_target()[m.triangle]
-                                                  : surface_.face_of_triangle()[m.triangle];
+                site.face[0] = site.face[1] = mesh_.file_face(
+                    aim == RayAim::Segments ? surface_.face_of_target()[m.triangle]
+                                            : surface_.face_of_triangle()[m.triangle]);
                 site.place = m.target;
                 site.text = "a ray at the patch of face " + std::to_string(site.face[0] + 1) +
                             " slips through at " + std::to_string(m.target.x) + ", " +
@@ -297,6 +308,7 @@ private:
 
     static constexpr int kLattice = 256;
     PatchMesh const& patches_;
+    ControlMesh const& mesh_;
     WatertightSettings const& s_;
     ThreadPool const& threads_;
     SharedEdges surface_;

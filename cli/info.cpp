@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/job.h"
 #include "cli/verbs.h"
+#include "pipeline/mesh/manifold.h"
 
 #include <fmt/format.h>
 
@@ -25,19 +26,28 @@ int run(InfoRequest const& o)
                         {{model.name, model.sha256}},
                         model.warnings,
                         {}};
+    std::vector<std::string> more;
     MeshSummary summary;
     try {
+        MeshRepairs repairs;
+        if (!o.model.build.strict) {
+            ManifoldMesh manifold = make_manifold(std::move(model.mesh));
+            model.mesh = std::move(manifold.mesh);
+            repairs = manifold.repairs;
+            more = in_words(repairs);
+        }
         summary = summarize(Topology(model.mesh));
+        summary.vertices += repairs.unused.number;
+        summary.unused_vertices += repairs.unused.number;
     } catch (MeshError const& e) {
         throw FormatError(model.path, model.line_of_face(e.face), e.what());
     }
     // A mesh that the scheme refuses still has figures: the refusal becomes a warning.
     std::vector<PatchCount> patches;
-    std::vector<std::string> more;
     try {
         SchemeOnMesh const surface = build(std::move(model), o.model);
         patches = surface.patches->patch_counts();
-        more = surface.warnings;
+        more.insert(more.end(), surface.warnings.begin(), surface.warnings.end());
     } catch (FormatError const& e) {
         more.push_back(info.name + " cannot draw this mesh: " + e.what());
     }

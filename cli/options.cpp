@@ -208,6 +208,8 @@ void add_options(Verb& verb, ModelRequest& o)
         "steps of Catmull-Clark subdivision of the mesh before the scheme, beyond those that it "
         "asks for, 0 to 6; nothing counts them",
         "0");
+    verb.flag("--strict", o.build.strict,
+              "refuse a mesh that would have to be cut or lose faces, instead of warning");
 }
 
 void add_options(Verb& verb, ShadingRequest& o)

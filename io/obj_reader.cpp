@@ -198,9 +198,7 @@ private:
     void face(std::string_view line, int number)
     {
         auto const words = words_of(line);
-        if (words.size() < 4)
-            fail(number,
-                 fmt::format("face has {} vertices, at least 3 are needed", words.size() - 1));
+        if (words.size() < 2) fail(number, "face has no vertices");
         scan.text += 'f';
         for (std::size_t i = 1; i < words.size(); ++i) {
             if (!is_index_group(words[i]))
@@ -375,11 +373,6 @@ ObjFile read_obj(std::string_view text, std::string const& name)
                                 index < 0 ? fmt::format(" ({} before this line)", seen) : ""));
             face.push_back(std::uint32_t(v));
         }
-        auto sorted = face;
-        std::sort(sorted.begin(), sorted.end());
-        if (auto const it = std::adjacent_find(sorted.begin(), sorted.end()); it != sorted.end())
-            throw FormatError(name, scan.face_line[f],
-                              fmt::format("face names vertex {} twice", *it + 1));
         mesh.add_face(face);
     }
 

@@ -31,8 +31,8 @@ inline constexpr float kMaxCoordinate = 1e9f;
 ///
 /// \param name  for messages and as the mesh's name
 /// Throws FormatError with file and line for: a coordinate that is missing, not a number or
-/// beyond kMaxCoordinate; an index of 0 or out of range; a face with fewer than 3 or repeated
-/// vertices; no face at all.
+/// beyond kMaxCoordinate; an index of 0 or out of range; no face at all. Faces may be of any number
+/// of vertices and meet in any way: see make_manifold.
 ObjFile read_obj(std::string_view text, std::string const& name);
 ObjFile read_obj_file(std::filesystem::path const& path);
 

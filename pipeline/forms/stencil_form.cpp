@@ -90,8 +90,8 @@ StencilForm::Type StencilForm::add_type(std::uint32_t face, Neighbourhood const&
         for (int i = 0; i < n.sides; ++i)
             valences += (i ? ", " : "") + std::to_string(n.corner[i].valence());
         throw LimitError("inputs of the patch of face " +
-                             std::to_string(mesh().place(face).face + 1) + " (valences " +
-                             valences + ")",
+                             std::to_string(mesh().base().file_face(mesh().place(face).face) + 1) +
+                             " (valences " + valences + ")",
                          n.inputs.size(), kMaxControlPoints);
     }
     std::size_t const kind = kind_of(face);

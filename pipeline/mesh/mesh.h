@@ -6,9 +6,11 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace tessemu {
@@ -43,6 +45,26 @@ struct ControlMesh {
     std::vector<Corner> corners;
     std::vector<std::uint32_t> holes; ///< faces that shape the surface but are not drawn
     BoundaryRule boundary = BoundaryRule::EdgeAndCorner;
+
+    // What make_manifold has changed: nothing, in a mesh that is as its file has it.
+    std::vector<std::uint32_t> file_vertices, file_faces; ///< numbers in the file, from 0
+    std::uint32_t cut_edges = 0;                          ///< of the file, no longer shared
+    /// Vertices a < b of an edge that two faces run along and do not share, ascending.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> slits;
+
+    std::uint32_t file_vertex(std::uint32_t v) const
+    {
+        return file_vertices.empty() ? v : file_vertices[v];
+    }
+    std::uint32_t file_face(std::uint32_t f) const
+    {
+        return file_faces.empty() ? f : file_faces[f];
+    }
+    bool is_slit(std::uint32_t a, std::uint32_t b) const
+    {
+        return std::binary_search(slits.begin(), slits.end(),
+                                  std::pair(std::min(a, b), std::max(a, b)));
+    }
 
     std::size_t faces() const { return face_start.size() - 1; }
     std::span<std::uint32_t const> face(std::size_t f) const

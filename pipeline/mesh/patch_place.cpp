@@ -44,22 +44,30 @@ std::uint32_t sides_of_face(ControlMesh const& mesh, PatchPlace const& p)
     return std::uint32_t(mesh.face(p.face).size());
 }
 
+// The two sides of a slit are two lines.
+std::uint32_t side_of_slit(ControlMesh const& mesh, std::uint32_t from, std::uint32_t to)
+{
+    return from > to && mesh.is_slit(from, to) ? 1 : 0;
+}
+
 // A point of edge k of the face, t from vertex k.
 MeshPoint on_edge(ControlMesh const& mesh, PatchPlace const& p, std::size_t k, std::uint32_t t)
 {
     std::uint32_t a = vertex(mesh, p, k), b = vertex(mesh, p, k + 1);
     if (t == 0) return {MeshPoint::Kind::Vertex, a, 0, 0, 0};
     if (t == kOne) return {MeshPoint::Kind::Vertex, b, 0, 0, 0};
+    std::uint32_t const side = side_of_slit(mesh, a, b);
     if (a > b) std::swap(a, b), t = kOne - t;
-    return {MeshPoint::Kind::Edge, a, b, 0, t};
+    return {MeshPoint::Kind::Edge, a, b, side, t};
 }
 
 MeshInterval along_edge(ControlMesh const& mesh, PatchPlace const& p, std::size_t k,
                         std::uint32_t from, std::uint32_t to)
 {
     std::uint32_t a = vertex(mesh, p, k), b = vertex(mesh, p, k + 1);
+    std::uint32_t const side = side_of_slit(mesh, a, b);
     if (a > b) std::swap(a, b), from = kOne - from, to = kOne - to;
-    return {{MeshLine::Kind::Edge, a, b, 0}, from, to};
+    return {{MeshLine::Kind::Edge, a, b, side}, from, to};
 }
 
 } // namespace
@@ -125,6 +133,17 @@ MeshPoint mesh_point(ControlMesh const& mesh, PatchPlace const& p, std::uint32_t
     if (x == kOne) return {MeshPoint::Kind::Face, p.face, p.corner, kOne, y};
     if (y == kOne) return {MeshPoint::Kind::Face, p.face, before, kOne, x};
     return {MeshPoint::Kind::Face, p.face, p.corner, x, y};
+}
+
+MeshPoint as_in_file(ControlMesh const& mesh, MeshPoint point)
+{
+    if (point.kind == MeshPoint::Kind::Face) {
+        point.a = mesh.file_face(point.a);
+        return point;
+    }
+    point.a = mesh.file_vertex(point.a);
+    if (point.kind == MeshPoint::Kind::Edge) point.b = mesh.file_vertex(point.b);
+    return point;
 }
 
 std::string in_words(MeshPoint const& m)

@@ -54,7 +54,7 @@ struct MeshPoint {
     static constexpr std::uint32_t kOne = 1u << 25;
     enum class Kind : std::uint8_t {
         Vertex, ///< a
-        Edge,   ///< at t from vertex a to vertex b, a < b
+        Edge,   ///< at t from vertex a to vertex b, a < b; s: the side of a slit
         Face,   ///< at (s, t) in the unit of face a at corner b
     };
     Kind kind = Kind::Vertex;
@@ -65,6 +65,8 @@ struct MeshPoint {
 /// \param u, v  domain point in 1/65536
 MeshPoint mesh_point(ControlMesh const& mesh, PatchPlace const& place, std::uint32_t u,
                      std::uint32_t v);
+/// With the numbers that vertices and faces have in the file.
+MeshPoint as_in_file(ControlMesh const& mesh, MeshPoint point);
 /// "edge 3-7, t = 32768/65536", "corner at vertex 3", counted from 1
 std::string in_words(MeshPoint const& point);
 
@@ -73,7 +75,7 @@ struct MeshLine {
     enum class Kind : std::uint8_t { Edge, ConstantX, ConstantY };
     Kind kind = Kind::Edge;
     std::uint32_t a = 0, b = 0; ///< Edge: vertices, a < b; otherwise face and corner of the unit
-    std::uint32_t at = 0;       ///< the constant coordinate
+    std::uint32_t at = 0;       ///< the constant coordinate; Edge: the side of a slit
 
     friend auto operator<=>(MeshLine const&, MeshLine const&) = default;
 };

@@ -41,9 +41,9 @@ RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step, int o
 
 std::string RefinedMesh::vertex_in_words(std::uint32_t v) const
 {
-    if (v < base_->positions.size()) return "vertex " + std::to_string(v + 1);
+    if (v < base_->positions.size()) return "vertex " + std::to_string(base_->file_vertex(v) + 1);
     std::uint32_t const face = topology().face_of(topology().ring(v)[0]);
-    return "the middle of face " + std::to_string(place(face).face + 1);
+    return "the middle of face " + std::to_string(base_->file_face(place(face).face) + 1);
 }
 
 } // namespace tessemu

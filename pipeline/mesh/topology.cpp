@@ -93,7 +93,7 @@ Topology::Topology(ControlMesh const& mesh) : mesh_(&mesh)
         HalfEdge start = outgoing.front().second; // interior: the smallest neighbour
         for (auto const& [far, h] : outgoing) {
             auto const it = std::lower_bound(incoming.begin(), incoming.end(), std::pair(far, 0u));
-            if (it != incoming.end() && it->first == far) continue;
+            if (it != incoming.end() && it->first == far && !mesh.is_slit(v, far)) continue;
             boundary_[v] = 1;
             start = h;
             break;
@@ -103,7 +103,9 @@ Topology::Topology(ControlMesh const& mesh) : mesh_(&mesh)
             std::uint32_t const wanted = vertex_of(previous(h));
             auto const it =
                 std::lower_bound(outgoing.begin(), outgoing.end(), std::pair(wanted, HalfEdge(0)));
-            if (it == outgoing.end() || it->first != wanted || it->second == start) break;
+            if (it == outgoing.end() || it->first != wanted || it->second == start ||
+                mesh.is_slit(v, wanted))
+                break;
             h = it->second;
             if (ordered.size() > ring.size()) break;
         }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/schemes/scheme.h"
 
+#include "pipeline/mesh/manifold.h"
+
 #include <algorithm>
 #include <charconv>
 
@@ -111,6 +113,14 @@ struct MeshFacts {
     std::uint32_t first_quad = 0, first_triangle = 0, first_polygon = 0;
     std::uint32_t boundary_face = 0, boundary_vertex = 0;
     bool boundary = false;
+
+    // The file's numbers.
+    void name_as(ControlMesh const& mesh)
+    {
+        for (std::uint32_t* f : {&first_quad, &first_triangle, &first_polygon, &boundary_face})
+            *f = mesh.file_face(*f);
+        boundary_vertex = mesh.file_vertex(boundary_vertex);
+    }
 };
 
 MeshFacts facts_of(Topology const& topology)
@@ -127,6 +137,7 @@ MeshFacts facts_of(Topology const& topology)
             if (topology.is_boundary(v))
                 out.boundary = true, out.boundary_face = f, out.boundary_vertex = v;
     }
+    out.name_as(mesh);
     return out;
 }
 
@@ -173,10 +184,17 @@ void refuse(SchemeInfo const& info, MeshFacts const& m, int subdivide)
                                          " on the boundary" + help);
 }
 
-void warn_of_tags(SchemeInfo const& info, ControlMesh const& mesh, std::vector<std::string>& out)
+void warn_of_tags(SchemeInfo const& info, Topology const& topology, std::vector<std::string>& out)
 {
-    if (!mesh.creases.empty() && !info.takes.creases)
-        out.push_back(std::to_string(mesh.creases.size()) +
+    ControlMesh const& mesh = topology.mesh();
+    // A crease on the boundary is sharp by nature.
+    auto const creases =
+        std::count_if(mesh.creases.begin(), mesh.creases.end(), [&](ControlMesh::Crease const& c) {
+            HalfEdge const h = topology.find_edge(c.a, c.b);
+            return h != Topology::kNone && topology.twin(h) != Topology::kNone;
+        });
+    if (creases && !info.takes.creases)
+        out.push_back(std::to_string(creases) +
                       " crease edges are drawn smooth: the scheme knows no creases");
     if (!mesh.corners.empty() && !info.takes.corners)
         out.push_back(std::to_string(mesh.corners.size()) +
@@ -196,6 +214,11 @@ SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions c
     SchemeInfo const info = scheme.info();
     SchemeOnMesh out;
     out.parameters = resolve_parameters(info, options.set);
+    if (!options.strict) {
+        ManifoldMesh manifold = make_manifold(std::move(mesh));
+        mesh = std::move(manifold.mesh);
+        out.warnings = in_words(manifold.repairs);
+    }
     std::size_t polygons = 0, largest = 0;
     for (std::size_t f = 0; f < mesh.faces(); ++f) {
         largest = std::max(largest, mesh.face(f).size());
@@ -215,7 +238,7 @@ SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions c
     out.patches = scheme.build(out.mesh, out.parameters);
     std::vector<std::string> const more = out.patches->warnings();
     out.warnings.insert(out.warnings.end(), more.begin(), more.end());
-    warn_of_tags(info, refined.base(), out.warnings);
+    warn_of_tags(info, refined.base_topology(), out.warnings);
     return out;
 }
 

@@ -94,13 +94,16 @@ struct SchemeOnMesh {
 };
 
 struct BuildOptions {
-    int subdivide = 0; ///< steps of subdivision beyond those that the scheme asks for, 0 to 6
+    /// Steps of subdivision beyond those that the scheme asks for, 0 to 6.
+    int subdivide = 0;
     ParameterTexts set = {};
+    /// Refuses a mesh that would have to be cut or to lose faces.
+    bool strict = false;
 };
 
-/// Refines the mesh as options and scheme ask, checks it and builds. Throws MeshError for a mesh
-/// that is no manifold or that the scheme does not take, naming a face of the given mesh;
-/// LimitError; Error.
+/// Makes the mesh a manifold, refines it as options and scheme ask, checks it and builds. Throws
+/// MeshError for a mesh that the scheme does not take, or, if strict, that is no manifold, naming a
+/// face of the given mesh; LimitError; Error.
 SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options = {});
 
 } // namespace tessemu

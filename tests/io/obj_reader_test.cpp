@@ -70,11 +70,19 @@ TEST(ObjReader, ErrorsNameFileLineValueAndLimit)
               "file.obj:1: coordinate 'nan' is not a finite number");
     EXPECT_EQ(message_of("v 1 2 0x1\n" + kCube),
               "file.obj:1: coordinate '0x1' is not a finite number");
-    EXPECT_EQ(message_of(kCube + "f 1 2\n"),
-              "file.obj:15: face has 2 vertices, at least 3 are needed");
-    EXPECT_EQ(message_of(kCube + "f 1 2 1\n"), "file.obj:15: face names vertex 1 twice");
+    EXPECT_EQ(message_of(kCube + "f\n"), "file.obj:15: face has no vertices");
     EXPECT_EQ(message_of("v 1 2 3\n"), "file.obj: holds no face (1 vertices)");
     EXPECT_NE(message_of("v 1 2 1e30\n" + kCube).find("limit is 1000000000"), std::string::npos);
+}
+
+// What is to be done with such faces is make_manifold's.
+TEST(ObjReader, TakesFacesOfAnyVertices)
+{
+    ControlMesh const m = read_obj(kCube + "f 1 2\nf 1 2 1\nf 3/1\n", "a.obj").mesh;
+    ASSERT_EQ(m.faces(), 9u);
+    EXPECT_EQ(m.face(6).size(), 2u);
+    EXPECT_EQ(m.face(7)[2], 0u);
+    EXPECT_EQ(m.face(8).size(), 1u);
 }
 
 TEST(ObjReader, WarnsAboutTagsThatItSkips)
