@@ -133,7 +133,8 @@ int run_error_view(DrawRequest const& o, Job& job)
 int run(DrawRequest const& o)
 {
     if (!o.output.empty()) check_image_path(o.output);
-    Job job = prepare(o.surface, "draw");
+    bool const cage = o.view.shows == ViewRequest::Shows::Cage;
+    Job job = prepare(o.surface, "draw", cage ? refine_for_scheme : build_scheme);
     set_picture(job, o.picture, o.surface);
     if (o.view.shows == ViewRequest::Shows::Error) return run_error_view(o, job);
     FrameSettings& f = job.frame;
@@ -163,7 +164,7 @@ int run(DrawRequest const& o)
     std::vector<SequenceFrame> sequence;
     for (std::size_t i = 0; i < job.poses.size(); ++i) {
         f.pose = job.poses[i].pose;
-        if (o.view.shows == ViewRequest::Shows::Cage)
+        if (cage)
             draw_cage(job.surface.mesh->mesh(), f, threads, frame);
         else
             draw_frame(job.patches(), f, threads, frame, [&](std::size_t n, std::size_t all) {

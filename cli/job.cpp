@@ -52,10 +52,10 @@ void print_table(std::string const& json_path, std::string const& table)
     if (json_path != "-") fmt::print("{}", table);
 }
 
-SchemeOnMesh build(Model model, ModelRequest const& o)
+SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make)
 {
     try {
-        return build_scheme(*o.scheme, std::move(model.mesh), o.build);
+        return make(*o.scheme, std::move(model.mesh), o.build);
     } catch (MeshError const& e) {
         throw FormatError(model.path, model.line_of_face(e.face), e.what());
     } catch (LimitError const& e) {
@@ -75,7 +75,8 @@ Config config_of(ModelRequest const& o, Parameters const& parameters)
 
 namespace {
 
-Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb)
+Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
+         MakeSurface& make)
 {
     Job job;
     job.frame.machine = shading.machine();
@@ -88,7 +89,7 @@ Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const
     job.header.inputs = {{model.name, model.sha256}};
     job.header.warnings = std::move(model.warnings);
     Stopwatch const build_clock;
-    job.surface = build(std::move(model), o);
+    job.surface = build(std::move(model), o, make);
     job.build_seconds = build_clock.seconds();
     auto const& more = job.surface.warnings;
     job.header.warnings.insert(job.header.warnings.end(), more.begin(), more.end());
@@ -178,16 +179,16 @@ Camera make_camera(CameraRequest const& o, std::span<glm::vec3 const> points, fl
 
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb)
 {
-    Job job = open(o, shading, verb);
+    Job job = open(o, shading, verb, build_scheme);
     add_config(job.header.config, shading);
     report_warnings(job.header, o.model);
     return job;
 }
 
-Job prepare(SurfaceRequest const& o, std::string const& verb)
+Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
 {
     check_request(o);
-    Job job = open(o.model, o.shading, verb);
+    Job job = open(o.model, o.shading, verb, make);
     FrameSettings& f = job.frame;
     f.partitioning = o.partitioning;
     f.tess_factor = float(o.tess);

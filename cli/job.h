@@ -67,14 +67,16 @@ struct Job {
     PatchMesh const& patches() const { return *surface.patches; }
 };
 
+/// build_scheme, or refine_for_scheme for who needs no patches.
+using MakeSurface = SchemeOnMesh(Scheme const&, ControlMesh, BuildOptions const&);
 /// Errors about the mesh name the file, and the line where it is known.
-SchemeOnMesh build(Model model, ModelRequest const& o);
+SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make = build_scheme);
 /// "scheme", "subdivide" and each parameter by its name.
 Config config_of(ModelRequest const& o, Parameters const& parameters);
 /// The model and its settings for shading. Prints warnings.
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb);
 /// With everything that verbs that tessellate share.
-Job prepare(SurfaceRequest const& o, std::string const& verb);
+Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make = build_scheme);
 /// Size, factors and camera, which shows the model as it moves through all frames.
 void set_picture(Job& job, PictureRequest const& o, SurfaceRequest const& surface);
 void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double seconds);

@@ -201,9 +201,9 @@ void warn_of_tags(SchemeInfo const& info, Topology const& topology, std::vector<
                       " sharp corners are drawn smooth: the scheme knows no corners");
 }
 
-} // namespace
-
-SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options)
+// What the scheme takes is refined, anything else refused or, unless it must be taken, refined too.
+SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const& options,
+                    bool must_be_taken)
 {
     constexpr int kMost = 6;
     if (options.subdivide < 0)
@@ -211,7 +211,6 @@ SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions c
                     ", it must be 0 or more");
     if (options.subdivide > kMost)
         throw LimitError("steps of subdivision", std::uint64_t(options.subdivide), kMost);
-    SchemeInfo const info = scheme.info();
     SchemeOnMesh out;
     out.parameters = resolve_parameters(info, options.set);
     if (!options.strict) {
@@ -225,7 +224,7 @@ SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions c
         polygons += mesh.face(f).size() > 4;
     }
     int const own = steps_of(info.takes, polygons > 0, 0);
-    refuse(info, facts_of(Topology(mesh)), options.subdivide); // before the work
+    if (must_be_taken) refuse(info, facts_of(Topology(mesh)), options.subdivide); // before the work
     out.mesh = std::make_shared<RefinedMesh const>(std::move(mesh), own + options.subdivide,
                                                    info.takes.step, own);
     RefinedMesh const& refined = *out.mesh;
@@ -235,10 +234,24 @@ SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions c
                                std::to_string(refined.reference().faces()) +
                                " quads of the mesh's " + std::to_string(refined.base().faces()) +
                                " faces");
+    return out;
+}
+
+} // namespace
+
+SchemeOnMesh refine_for_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options)
+{
+    return refine(scheme.info(), std::move(mesh), options, false);
+}
+
+SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options)
+{
+    SchemeInfo const info = scheme.info();
+    SchemeOnMesh out = refine(info, std::move(mesh), options, true);
     out.patches = scheme.build(out.mesh, out.parameters);
     std::vector<std::string> const more = out.patches->warnings();
     out.warnings.insert(out.warnings.end(), more.begin(), more.end());
-    warn_of_tags(info, refined.base_topology(), out.warnings);
+    warn_of_tags(info, out.mesh->base_topology(), out.warnings);
     return out;
 }
 

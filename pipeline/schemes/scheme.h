@@ -105,5 +105,8 @@ struct BuildOptions {
 /// MeshError for a mesh that the scheme does not take, or, if strict, that is no manifold, naming a
 /// face of the given mesh; LimitError; Error.
 SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options = {});
+/// The mesh alone, refined as for the scheme, whether it takes it or not: `patches` is none.
+SchemeOnMesh refine_for_scheme(Scheme const& scheme, ControlMesh mesh,
+                               BuildOptions const& options = {});
 
 } // namespace tessemu

@@ -315,6 +315,29 @@ TEST(Program, FacesOfAnyKindAreDrawnWithWarningsThatCountThem)
         << strict.err;
 }
 
+// What no scheme draws can still be looked at.
+TEST(Program, TheCageViewNeedsNoPatches)
+{
+    fs::path const fan = scratch() / "fan.obj", open = scratch() / "fan.png"; // 40 triangles
+    std::string text = "v 0 0 1\n", faces;
+    for (int i = 0; i < 40; ++i) {
+        double const t = i * 0.157;
+        text += "v " + std::to_string(std::cos(t)) + " " + std::to_string(std::sin(t)) + " 0\n";
+        faces += "f 1 " + std::to_string(2 + i) + " " + std::to_string(2 + (i + 1) % 40) + "\n";
+    }
+    std::ofstream(fan) << text << faces;
+    std::string const draw =
+        "draw " + fan.string() + " --scheme pm --size 64x64 -o " + open.string();
+    EXPECT_EQ(run(draw).status, 2); // an open mesh, and beyond the limits of others
+    fs::remove(open);
+    Result const cage = run(draw + " --view cage");
+    EXPECT_EQ(cage.status, 0) << cage.err;
+    EXPECT_TRUE(fs::exists(open));
+    // What a scheme takes is shown as it is refined for it.
+    EXPECT_EQ(draw_json("jug --view cage --size 64x64")["counters"],
+              draw_json("jug --view cage --size 64x64 --scheme pm")["counters"]);
+}
+
 TEST(Program, ParametersOfASchemeAreResolvedInTheResult)
 {
     Json const a = draw_json("jug --size 16x16"),
