@@ -115,6 +115,7 @@ TEST(MixedLevels, TheComparisonFindsEachPatchOnItsFace)
         EqualParameterErrors const e =
             equal_parameter_errors(MixedLevels(mesh, 2), frame, level, ThreadPool());
         ErrorStatistics const position = e.position_statistics();
+        // Every face, whole or split, has 2^(level-1) + 1 points a side at least: all are compared.
         EXPECT_GT(position.samples, mesh.faces() * (1u << (2 * (level - 1))));
         // Control points and points are sums of at most 16 products each, rounded once a product
         // and a sum: 2 (16 + 16) units of 2^-24 of the largest coordinate, which the diagonal

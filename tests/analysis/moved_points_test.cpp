@@ -6,6 +6,7 @@
 #include "io/model.h"
 #include "pipeline/frame.h"
 #include "pipeline/schemes/scheme.h"
+#include "tests/support/show_point.h"
 
 #include <gtest/gtest.h>
 
@@ -15,17 +16,6 @@
 
 namespace tessemu {
 namespace {
-
-struct ShowPoint {
-    template <class T> using Input = SurfacePoint<T>;
-    template <class T> using Output = ShadedVertex<T>;
-    Matrix4 view_projection;
-    template <class T>
-    ShadedVertex<T> operator()(VertexInput<T> const&, SurfacePoint<T> const& p) const
-    {
-        return {transform(view_projection, p.position), p.normal};
-    }
-};
 
 // One patch that no tessellator makes: a saddle over the unit square.
 class Sheet final : public PatchMesh {
@@ -37,7 +27,8 @@ public:
         Draw d;
         d.patches = places_;
         d.grid = grid_;
-        d.pipeline.vertex_shader = bind_vertex_shader(ShowPoint{s.view_projection}, s.machine);
+        d.pipeline.vertex_shader =
+            bind_vertex_shader(test::ShowPoint{s.view_projection}, s.machine);
         d.call.topology = PrimitiveTopology::TriangleList;
         d.call.set_vertices(points_, 6);
         d.call.indices = std::span<std::uint32_t const>(grid_->patch.indices);
@@ -121,6 +112,7 @@ TEST(MovedPoints, GoAlongTheirNormalsByTheParityOfTheirBits)
             ASSERT_EQ(after[i].position, p + (odd ? kParity : -kParity) * n);
             ASSERT_EQ(after[i].normal, n);
         }
+        // Both directions were met: either alone would show nothing of the parity.
         EXPECT_GT(outwards, 0u);
         EXPECT_LT(outwards, before.size());
     });

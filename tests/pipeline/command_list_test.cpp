@@ -8,6 +8,7 @@
 #include "pipeline/mesh/catmull_clark.h"
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/edges.h"
+#include "tests/support/show_point.h"
 
 #include <gtest/gtest.h>
 
@@ -263,17 +264,6 @@ struct GridComputeShader {
     }
 };
 
-struct ShowPoint {
-    template <class T> using Input = SurfacePoint<T>;
-    template <class T> using Output = ShadedVertex<T>;
-    Matrix4 view_projection;
-    template <class T>
-    ShadedVertex<T> operator()(VertexInput<T> const&, SurfacePoint<T> const& p) const
-    {
-        return {transform(view_projection, p.position), p.normal};
-    }
-};
-
 class GridPatches final : public PatchMesh {
 public:
     explicit GridPatches(std::shared_ptr<RefinedMesh const> refined) : PatchMesh(std::move(refined))
@@ -323,7 +313,8 @@ public:
         cs.domain = {memory->domain, 1, "domain"};
         cs.points = {memory->points, 2, "points"};
         cs.count = int(points);
-        d.pipeline.vertex_shader = bind_vertex_shader(ShowPoint{s.view_projection}, s.machine);
+        d.pipeline.vertex_shader =
+            bind_vertex_shader(test::ShowPoint{s.view_projection}, s.machine);
         d.call.topology = PrimitiveTopology::TriangleList;
         d.call.set_vertices(memory->points, 6);
         d.call.indices = std::span<std::uint32_t const>(memory->indices);
