@@ -293,6 +293,30 @@ std::optional<StencilForm::Tables> flipped_weight(StencilForm const& form, std::
     return out;
 }
 
+// The same of a wide patch, whose weights are its own: its corners' limit points are its first rows.
+std::optional<StencilForm::Tables> flipped_wide_weight(StencilForm const& form, std::size_t group,
+                                                       std::size_t patch)
+{
+    StencilForm::Tables out = form.tables();
+    StencilForm::WideGroup& g = out.wide[group];
+    auto const sum = [&](std::size_t row) {
+        glm::vec3 s(0);
+        for (std::size_t k = g.first[row]; k < g.first[row + 1]; ++k)
+            s += g.weights[k] * form.mesh().mesh().positions[g.vertices[k]];
+        return s;
+    };
+    std::size_t const first = patch * std::size_t(g.rows);
+    for (std::size_t row = first; row < first + g.patches[patch].sides; ++row)
+        for (std::size_t k = g.first[row]; k < g.first[row + 1]; ++k) {
+            float const right = g.weights[k];
+            glm::vec3 const before = sum(row);
+            g.weights[k] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(right) ^ 1u);
+            if (sum(row) != before) return out;
+            g.weights[k] = right;
+        }
+    return {};
+}
+
 class MistakenPatches final : public PatchMesh {
 public:
     MistakenPatches(PatchMesh const& right, PlantedMistake const& mistake)
@@ -383,9 +407,13 @@ private:
         if (!form_)
             throw Error("the mistake 'weights' needs weights of one patch, which the stencil form "
                         "has: in other forms a vertex is the same for all its patches");
-        for (std::size_t g = 0; g < form_->tables().groups.size() && !tables_; ++g)
-            if (auto const p = patch_of(form_->tables().groups[g].patches))
+        StencilForm::Tables const& tables = form_->tables();
+        for (std::size_t g = 0; g < tables.groups.size() && !tables_; ++g)
+            if (auto const p = patch_of(tables.groups[g].patches))
                 tables_ = flipped_weight(*form_, g, std::size_t(*p));
+        for (std::size_t g = 0; g < tables.wide.size() && !tables_; ++g)
+            if (auto const p = patch_of(tables.wide[g].patches))
+                tables_ = flipped_wide_weight(*form_, g, std::size_t(*p));
     }
 
     PatchMesh const& right_;

@@ -247,6 +247,21 @@ ComputeShader bind_compute_shader(Shader const& shader, Machine const& machine)
     return bind_shader<ComputeProgramOn, ComputeProgram>(shader, machine);
 }
 
+/// Groups of `per_group` threads on x for so many threads: on y too where x, which has at most
+/// 65,535 groups, is too short. linear_thread numbers the threads.
+inline std::array<std::uint32_t, 3> groups_for(std::uint64_t threads, int per_group)
+{
+    std::uint64_t const all = (threads + std::uint64_t(per_group) - 1) / std::uint64_t(per_group);
+    auto const x = std::uint32_t(std::min<std::uint64_t>(all, kMaxDispatch));
+    return {x, x ? std::uint32_t((all + x - 1) / x) : 0, 1};
+}
+/// The number of a thread of groups_for, up to 2^31.
+template <class Shader, class T> int_of<T> linear_thread(ComputeInput<T> const& in)
+{
+    return in.dispatch_thread_id.x +
+           int_of<T>(in.group_id.y * std::int32_t(kMaxDispatch) * Shader::kThreads[0]);
+}
+
 /// Runs x * y * z groups; any 0 does nothing (R151). Throws LimitError past D3D11's limits.
 DrawStatistics dispatch(ComputeShader const& shader, std::array<std::uint32_t, 3> groups,
                         ThreadPool const& threads);

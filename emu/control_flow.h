@@ -127,6 +127,16 @@ template <class T> constexpr detail::Loop<T> loop(int n)
     return detail::Loop<T>(n);
 }
 
+/// The turns of a loop whose number differs by lane: as many as the active lane with the largest
+/// asks for. What a turn does goes under when(k < n).
+template <class T, int N> int longest(IntLanes<N> n)
+{
+    int turns = 0;
+    for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1)
+        turns = std::max(turns, int(n.raw[std::countr_zero(bits)]));
+    return turns;
+}
+
 /// unrolled<n>(body): body(0), ..., body(n-1) with the index a constant, as a shader compiler
 /// unrolls; each turn is a place in the source of its own.
 template <int kTurns, class Body> constexpr void unrolled(Body&& body)

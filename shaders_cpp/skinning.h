@@ -91,7 +91,7 @@ struct SkinningComputeShader {
     {
         using Int = int_of<T>;
         group.for_each_thread([&](ComputeInput<T> const& in) {
-            Int const vertex = in.dispatch_thread_id.x;
+            Int const vertex = linear_thread<SkinningComputeShader>(in);
             Int const three = vertex * Int(3);
             float3<T> const p(load<T>(rest, three), load<T>(rest, three + Int(1)),
                               load<T>(rest, three + Int(2)));

@@ -22,6 +22,21 @@ SkinBuffers skin_of(Pose const& pose)
     return {{pose.skin->vertices, 0, "skin"}, {pose.bones, 1, "bones"}};
 }
 
+VertexSource add_skinning(CommandList& list, ControlMesh const& mesh,
+                          SurfaceSettings const& settings, std::size_t texels)
+{
+    std::size_t const vertices = mesh.positions.size();
+    auto const moved = std::make_shared<std::vector<float>>(std::max(vertices, texels) * 4);
+    list.memory.push_back(moved);
+    SkinningComputeShader cs;
+    cs.skin = skin_of(*settings.pose);
+    cs.rest = {positions_of(mesh).floats, 2, "rest_positions"};
+    cs.moved = {std::span(*moved).first(vertices * 4), 3, "moved_positions"};
+    list.commands.emplace_back(
+        Dispatch{"skinning", bind_compute_shader(cs, settings.machine), groups_for(vertices, 64)});
+    return {*moved, 3, 4};
+}
+
 void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const& d,
                     SurfaceSettings const& settings)
 {

@@ -18,6 +18,12 @@ struct PatchCount {
     int min_inputs = 0, max_inputs = 0;
 };
 
+/// Patches that a scheme draws in another way than its paper's, for they are beyond a limit.
+struct AnotherWay {
+    std::uint32_t face; ///< the first, by its number in the file
+    std::string what;   ///< how many, why and how, in the user's words
+};
+
 /// Holds its tables and index buffers; made once, it gives commands for any factor, machine or
 /// view, so sweeps pay for tables once.
 class PatchMesh {
@@ -32,6 +38,7 @@ public:
     virtual std::vector<PatchCount> patch_counts() const = 0;
     /// What the scheme could not honour, in the user's words.
     virtual std::vector<std::string> warnings() const { return {}; }
+    virtual std::optional<AnotherWay> another_way() const { return {}; }
 
 private:
     std::shared_ptr<RefinedMesh const> mesh_;
@@ -50,6 +57,13 @@ VertexSource positions_of(ControlMesh const& mesh);
 
 /// A pose as shaders read it: slots 0 and 1.
 SkinBuffers skin_of(Pose const& pose);
+
+/// Appends a dispatch that moves the mesh's vertices into the settings' pose, for shaders that read
+/// their neighbours from memory.
+///
+/// \param texels  at least so many vertices' room
+VertexSource add_skinning(CommandList& list, ControlMesh const& mesh,
+                          SurfaceSettings const& settings, std::size_t texels = 0);
 
 /// What a draw of patches consists of.
 struct PatchDraw {

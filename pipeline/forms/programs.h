@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "shaders_cpp/stencil_form/stencil_compute_shader.h"
 #include "shaders_cpp/stencil_form/stencil_hull_shader.h"
 #include "shaders_cpp/two_stage_form/by_corners.h"
 
@@ -13,8 +14,11 @@ namespace tessemu {
 #define TESSEMU_FORM_PROGRAMS(instantiate, T)                                                      \
     instantiate class DomainProgramOn<RegularQuadDomainShader, T>;                                 \
     instantiate class DomainProgramOn<RegularCornersDomainShader, T>;                              \
-    instantiate class HullProgramOn<StencilHullShader<TessellatorDomain::Quad>, T>;                \
-    instantiate class HullProgramOn<StencilHullShader<TessellatorDomain::Tri>, T>;
+    instantiate class HullProgramOn<StencilQuadHullShader<SummedRows<4>>, T>;                      \
+    instantiate class HullProgramOn<StencilQuadHullShader<GatheredRows<4>>, T>;                    \
+    instantiate class HullProgramOn<StencilTriHullShader<SummedRows<3>>, T>;                       \
+    instantiate class HullProgramOn<StencilTriHullShader<GatheredRows<3>>, T>;                     \
+    instantiate class ComputeProgramOn<StencilComputeShader, T>;
 
 TESSEMU_FORM_PROGRAMS(extern template, FastScalar)
 TESSEMU_FORM_PROGRAMS(extern template, CheckScalar)

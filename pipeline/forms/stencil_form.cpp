@@ -3,8 +3,10 @@
 
 #include "shaders_cpp/pass_through.h"
 #include "shaders_cpp/skinning.h"
+#include "shaders_cpp/stencil_form/stencil_compute_shader.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <unordered_map>
 
@@ -24,14 +26,50 @@ CommandList StencilForm::commands(SurfaceSettings const& settings, Tables const&
 {
     CommandList list;
     VertexShader const vertex = vertex_shader(settings);
-    for (Group const& g : tables.groups)
-        add_patch_draw(
-            list, mesh(),
-            {kinds_[g.kind], positions_of(mesh().mesh()), g.inputs, g.indices, g.patches, vertex,
-             hull_shader(g.kind, {tables.weights, tables.zero_masks, g.words, g.order}, settings),
-             domain_shader(g.kind, settings)},
-            settings);
+    for (Group const& g : tables.groups) {
+        StencilBuffers const buffers{tables.weights, tables.zero_masks, g.words, g.order};
+        add_patch_draw(list, mesh(),
+                       {kinds_[g.kind], positions_of(mesh().mesh()), g.inputs, g.indices, g.patches,
+                        vertex, hull_shader(g.kind, buffers, settings),
+                        domain_shader(g.kind, settings)},
+                       settings);
+    }
+    if (!tables.wide.empty()) add_wide_draws(list, settings, tables);
     return list;
+}
+
+void StencilForm::add_wide_draws(CommandList& list, SurfaceSettings const& settings,
+                                 Tables const& tables) const
+{
+    VertexSource positions = positions_of(mesh().mesh());
+    if (settings.pose) positions = add_skinning(list, mesh().mesh(), settings);
+    VertexShader const vertex = bind_vertex_shader(PassThroughVertexShader{}, settings.machine);
+    for (WideGroup const& g : tables.wide) {
+        std::size_t const rows = g.first.size() - 1;
+        auto const sums = std::make_shared<std::vector<float>>(3 * rows);
+        list.memory.push_back(sums);
+        StencilComputeShader cs;
+        cs.first = {g.first, 0, "stencil_starts"};
+        cs.vertices = {g.vertices, 1, "stencil_vertices"};
+        cs.weights = {g.weights, 2, "stencil_weights"};
+        cs.positions = {positions.floats, 3, "positions"};
+        cs.sums = {*sums, 4, "stencil_sums"};
+        cs.stride = positions.stride;
+        cs.rows = int(rows);
+        list.commands.emplace_back(
+            Dispatch{"stencils", bind_compute_shader(cs, settings.machine), groups_for(rows, 64)});
+        GatheredBuffers const buffers{g.rows, *sums, g.words, g.constants};
+        add_patch_draw(list, mesh(),
+                       {kinds_[g.kind],
+                        {*sums, 3, 3},
+                        g.points,
+                        g.indices,
+                        g.patches,
+                        vertex,
+                        hull_shader(g.kind, buffers, settings),
+                        domain_shader(g.kind, settings)},
+                       settings);
+    }
 }
 
 std::vector<PatchCount> StencilForm::patch_counts() const
@@ -39,12 +77,15 @@ std::vector<PatchCount> StencilForm::patch_counts() const
     std::vector<PatchCount> out;
     for (std::size_t k = 0; k < kinds_.size(); ++k) {
         PatchCount c{kinds_[k], 0, 0, 0, 0};
-        for (Group const& g : tables_.groups) {
-            if (g.kind != k) continue;
-            if (c.patches == 0) c.min_inputs = g.inputs;
-            c.max_inputs = g.inputs;
-            c.patches += g.patches.size();
-        }
+        auto const add = [&](std::size_t patches, int min_inputs, int max_inputs) {
+            c.min_inputs = c.patches ? std::min(c.min_inputs, min_inputs) : min_inputs;
+            c.max_inputs = std::max(c.max_inputs, max_inputs);
+            c.patches += patches;
+        };
+        for (Group const& g : tables_.groups)
+            if (g.kind == k) add(g.patches.size(), g.inputs, g.inputs);
+        for (WideGroup const& g : tables_.wide)
+            if (g.kind == k) add(g.patches.size(), g.min_inputs, g.max_inputs);
         c.types = std::size_t(std::count_if(types_.begin(), types_.end(),
                                             [&](Type const& t) { return t.kind == k; }));
         if (c.patches) out.push_back(c);
@@ -66,42 +107,44 @@ void StencilForm::make_tables()
         if (hidden[f]) continue;
         find_neighbourhood(topology, f, n);
         auto const [it, fresh] = type_ids.try_emplace(n.key, std::uint32_t(types_.size()));
-        if (fresh) types_.push_back(add_type(f, n));
+        if (fresh) add_type(f, n);
         patches.push_back({f, it->second});
     }
     std::stable_sort(patches.begin(), patches.end(), [&](Patch const& a, Patch const& b) {
         Type const &s = types_[a.type], &t = types_[b.type];
-        return std::tuple(s.kind, s.inputs, a.type) < std::tuple(t.kind, t.inputs, b.type);
+        return std::tuple(s.kind, s.inputs(), a.type) < std::tuple(t.kind, t.inputs(), b.type);
     });
-    std::vector<Group>& groups = tables_.groups;
+    std::size_t wide = 0;
+    int most = 0;
+    std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
     for (Patch const& p : patches) {
         Type const& t = types_[p.type];
-        if (groups.empty() || groups.back().kind != t.kind || groups.back().inputs != t.inputs)
-            groups.push_back({t.kind, t.inputs, {}, {}, {}, {}});
         find_neighbourhood(topology, p.face, n);
-        add_patch(groups.back(), t, n, p.face);
+        if (t.wide()) {
+            add_wide_patch(t, n, p.face);
+            ++wide, most = std::max(most, t.inputs());
+            first = std::min(first, mesh().base().file_face(mesh().place(p.face).face));
+        } else {
+            add_patch(t, n, p.face);
+        }
     }
+    for (Type& t : types_) t.stencils.rows.clear();
+    if (wide)
+        another_way_ = {first, std::to_string(wide) + (wide == 1 ? " patch has" : " patches have") +
+                                   " more than " + std::to_string(kMaxControlPoints) +
+                                   " inputs (up to " + std::to_string(most) +
+                                   "): a dispatch sums their control points before the draw"};
 }
 
-StencilForm::Type StencilForm::add_type(std::uint32_t face, Neighbourhood const& n)
+void StencilForm::add_type(std::uint32_t face, Neighbourhood const& n)
 {
-    if (n.inputs.size() > kMaxControlPoints) {
-        std::string valences;
-        for (int i = 0; i < n.sides; ++i)
-            valences += (i ? ", " : "") + std::to_string(n.corner[i].valence());
-        throw LimitError("inputs of the patch of face " +
-                             std::to_string(mesh().base().file_face(mesh().place(face).face) + 1) +
-                             " (valences " + valences + ")",
-                         n.inputs.size(), kMaxControlPoints);
-    }
     std::size_t const kind = kind_of(face);
-    PatchStencils const s = stencils(kind, n);
-    Type const t{kind,
-                 s.inputs,
-                 int(s.rows.size()),
-                 {s.corner_row[0], s.corner_row[1], s.corner_row[2], s.corner_row[3]},
-                 tables_.weights.size(),
-                 tables_.zero_masks.size()};
+    types_.push_back(
+        {kind, stencils(kind, n), 0, tables_.weights.size(), tables_.zero_masks.size()});
+    Type& t = types_.back();
+    PatchStencils& s = t.stencils;
+    t.rows = s.rows.size();
+    if (t.wide()) return;
     for (int i = 0; i < s.inputs; ++i)
         for (auto const& row : s.rows) tables_.weights.push_back(float(row[std::size_t(i)]));
     for (auto const& row : s.rows) {
@@ -111,29 +154,83 @@ StencilForm::Type StencilForm::add_type(std::uint32_t face, Neighbourhood const&
         tables_.zero_masks.push_back(mask);
     }
     for (double c : s.constants) tables_.weights.push_back(float(c));
-    return t;
+    s.rows.clear();
 }
 
-void StencilForm::add_patch(Group& g, Type const& t, Neighbourhood const& n, std::uint32_t face)
-{
-    g.patches.push_back(mesh().place(face, n.rotation));
-    g.indices.insert(g.indices.end(), n.inputs.begin(), n.inputs.end());
-    std::uint8_t order[kMaxControlPoints];
-    std::iota(order, order + n.inputs.size(), std::uint8_t(0));
-    std::sort(order, order + n.inputs.size(),
-              [&](std::uint8_t a, std::uint8_t b) { return n.inputs[a] < n.inputs[b]; });
-    g.order.insert(g.order.end(), order, order + n.inputs.size());
+namespace {
 
+// Inputs in ascending global vertex id, in which sums run.
+template <class Index> std::vector<Index> ascending(Neighbourhood const& n)
+{
+    std::vector<Index> order(n.inputs.size());
+    std::iota(order.begin(), order.end(), Index(0));
+    std::sort(order.begin(), order.end(),
+              [&](Index a, Index b) { return n.inputs[a] < n.inputs[b]; });
+    return order;
+}
+
+std::uint32_t reversed_edges(Neighbourhood const& n)
+{
     std::uint32_t reversed = 0;
     for (int k = 0; k < n.sides; ++k) {
         std::uint32_t const a = n.inputs[std::size_t(n.corner[k].vertex())];
         std::uint32_t const b = n.inputs[std::size_t(n.corner[(k + 1) % n.sides].vertex())];
         if (a > b) reversed |= 1u << k;
     }
+    return reversed;
+}
+
+} // namespace
+
+void StencilForm::add_patch(Type const& t, Neighbourhood const& n, std::uint32_t face)
+{
+    std::vector<Group>& groups = tables_.groups;
+    if (groups.empty() || groups.back().kind != t.kind || groups.back().inputs != t.inputs())
+        groups.push_back({t.kind, t.inputs(), {}, {}, {}, {}});
+    Group& g = groups.back();
+    g.patches.push_back(mesh().place(face, n.rotation));
+    g.indices.insert(g.indices.end(), n.inputs.begin(), n.inputs.end());
+    std::vector<std::uint8_t> const order = ascending<std::uint8_t>(n);
+    g.order.insert(g.order.end(), order.begin(), order.end());
     g.words.insert(g.words.end(), {std::uint32_t(t.first_weight), std::uint32_t(t.first_mask),
-                                   std::uint32_t(t.rows), reversed});
+                                   std::uint32_t(t.rows), reversed_edges(n)});
     for (int i = 0; i < n.sides; ++i)
-        g.words.push_back(std::uint32_t(t.corner_row[i] + 2 * n.ring_shift[i]));
+        g.words.push_back(std::uint32_t(t.stencils.corner_row[i] + 2 * n.ring_shift[i]));
+}
+
+void StencilForm::add_wide_patch(Type const& t, Neighbourhood const& n, std::uint32_t face)
+{
+    PatchStencils const& s = t.stencils;
+    std::vector<WideGroup>& groups = tables_.wide;
+    if (groups.empty() || groups.back().kind != t.kind) {
+        WideGroup fresh{};
+        fresh.kind = t.kind;
+        fresh.points = s.control_points;
+        fresh.rows = s.control_points + 6 * n.sides;
+        fresh.min_inputs = t.inputs(); // of the first: they ascend
+        fresh.first = {0};
+        groups.push_back(std::move(fresh));
+    }
+    WideGroup& g = groups.back();
+    g.max_inputs = t.inputs();
+    auto const first_row = std::uint32_t(g.first.size() - 1);
+    for (int i = 0; i < g.points; ++i) g.indices.push_back(first_row + std::uint32_t(i));
+    g.patches.push_back(mesh().place(face, n.rotation));
+    g.words.insert(g.words.end(), {reversed_edges(n), std::uint32_t(g.constants.size())});
+    for (double c : s.constants) g.constants.push_back(float(c));
+    std::vector<std::uint32_t> const order = ascending<std::uint32_t>(n);
+    auto const add_row = [&](StencilRow const& row) {
+        for (std::uint32_t i : order)
+            if (float const w = float(row[i]); w != 0) {
+                g.vertices.push_back(n.inputs[i]);
+                g.weights.push_back(w);
+            }
+        g.first.push_back(std::uint32_t(g.weights.size()));
+    };
+    for (int r = 0; r < s.control_points + 4 * n.sides; ++r) add_row(s.rows[std::size_t(r)]);
+    for (int i = 0; i < n.sides; ++i)
+        for (int k = 0; k < 2; ++k)
+            add_row(s.rows[std::size_t(s.corner_row[i] + 2 * n.ring_shift[i] + k)]);
 }
 
 } // namespace tessemu

@@ -2,6 +2,9 @@
 // weights for each type, an index buffer for each kind and number of inputs. A scheme derives from
 // it and says what kinds of patches it has, their stencils and the shaders that draw them.
 //
+// A patch of Direct3D 11 has at most 32 control points. One whose stencils need more vertices is
+// wide: a dispatch sums its rows, whatever their length, into a buffer that its draw reads.
+//
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
@@ -9,14 +12,24 @@
 #include "pipeline/forms/patch_stencils.h"
 #include "shaders_cpp/stencil_form/stencil_hull_shader.h"
 
+#include <variant>
+
 namespace tessemu {
 
-/// What a draw's hull shader reads besides the vertices; see StencilHullShader.
+/// What a draw's hull shader reads besides the vertices; see SummedRows.
 struct StencilBuffers {
     std::span<float const> weights;
     std::span<std::uint32_t const> zero_masks, patches;
     std::span<std::uint8_t const> order;
 };
+/// The same of wide patches; see GatheredRows.
+struct GatheredBuffers {
+    int rows;
+    std::span<float const> sums;
+    std::span<std::uint32_t const> patches;
+    std::span<float const> constants;
+};
+using RowBuffers = std::variant<StencilBuffers, GatheredBuffers>;
 
 class StencilForm : public PatchMesh {
 public:
@@ -29,10 +42,22 @@ public:
         std::vector<std::uint32_t> words; ///< StencilPatchWords
         std::vector<std::uint8_t> order;
     };
+    /// Wide patches of one kind, and their rows as StencilComputeShader reads them.
+    struct WideGroup {
+        std::size_t kind;
+        int points, rows; ///< of a patch
+        int min_inputs, max_inputs;
+        std::vector<PatchPlace> patches;
+        std::vector<std::uint32_t> indices; ///< of the control points among the rows
+        std::vector<std::uint32_t> words;   ///< GatheredPatchWords
+        std::vector<std::uint32_t> first, vertices;
+        std::vector<float> weights, constants;
+    };
     struct Tables {
         std::vector<float> weights;            ///< [type][input][row], then the type's constants
         std::vector<std::uint32_t> zero_masks; ///< [type][row]
         std::vector<Group> groups;
+        std::vector<WideGroup> wide;
     };
 
     CommandList commands(SurfaceSettings const& settings) const final
@@ -45,6 +70,7 @@ public:
 
     std::vector<PatchCount> patch_counts() const final;
     std::vector<std::string> warnings() const final { return warnings_; }
+    std::optional<AnotherWay> another_way() const final { return another_way_; }
 
 protected:
     StencilForm(std::shared_ptr<RefinedMesh const> mesh, std::vector<PatchKind> kinds)
@@ -52,47 +78,68 @@ protected:
           kinds_(std::move(kinds))
     {
     }
-    /// Makes the tables: the last line of the scheme's constructor. Throws LimitError for a patch
-    /// with more than 32 inputs.
-    /// \cost  a table for each connectivity type, then linear in the faces
+    /// Makes the tables: the last line of the scheme's constructor.
+    /// \cost  a table for each connectivity type, then linear in the faces and in the terms of wide
+    ///        patches' rows
     void make_tables();
 
     // What a scheme says. Kinds are numbers in the constructor's list.
     virtual std::size_t kind_of(std::uint32_t face) const = 0;
     virtual PatchStencils stencils(std::size_t kind, Neighbourhood const& patch) const = 0;
-    virtual HullShader hull_shader(std::size_t kind, StencilBuffers const& buffers,
+    virtual HullShader hull_shader(std::size_t kind, RowBuffers const& buffers,
                                    SurfaceSettings const& settings) const = 0;
     virtual DomainShader domain_shader(std::size_t kind, SurfaceSettings const& settings) const = 0;
 
 private:
     struct Type {
         std::size_t kind;
-        int inputs, rows;
-        int corner_row[4];
-        std::size_t first_weight, first_mask;
+        PatchStencils stencils; ///< their rows of wide patches only
+        std::size_t rows, first_weight, first_mask;
+
+        int inputs() const { return stencils.inputs; }
+        bool wide() const { return inputs() > kMaxControlPoints; }
     };
-    Type add_type(std::uint32_t face, Neighbourhood const& n);
-    void add_patch(Group& g, Type const& t, Neighbourhood const& n, std::uint32_t face);
+    void add_type(std::uint32_t face, Neighbourhood const& n);
+    void add_patch(Type const& t, Neighbourhood const& n, std::uint32_t face);
+    void add_wide_patch(Type const& t, Neighbourhood const& n, std::uint32_t face);
+    void add_wide_draws(CommandList& list, SurfaceSettings const& settings,
+                        Tables const& tables) const;
 
     std::vector<PatchKind> kinds_;
     Tables tables_;
     std::vector<Type> types_;
     std::vector<std::string> warnings_;
+    std::optional<AnotherWay> another_way_;
 };
 
 /// A hull shader with a StencilHullShader's members on the buffers of a kind.
-template <class Shader>
-HullShader stencil_hull_shader(StencilBuffers const& buffers, int sums,
+///
+/// \tparam Shader  of Rows
+/// \param points   its output control points that are rows
+template <template <class> class Shader, int kSides>
+HullShader stencil_hull_shader(RowBuffers const& buffers, int points,
                                SurfaceSettings const& settings)
 {
-    Shader hs;
-    hs.points = sums;
-    hs.weights = {buffers.weights, 0, "stencil_weights"};
-    hs.zero_masks = {buffers.zero_masks, 1, "zero_masks"};
-    hs.patches = {buffers.patches, 2, "patch_words"};
-    hs.order = {buffers.order, 3, "order"};
-    hs.factors = settings.factor_rule();
-    return bind_hull_shader(hs, settings.machine);
+    auto const bound = [&](auto hs) {
+        hs.points = points;
+        hs.factors = settings.factor_rule();
+        return bind_hull_shader(hs, settings.machine);
+    };
+    if (auto const* const b = std::get_if<GatheredBuffers>(&buffers)) {
+        Shader<GatheredRows<kSides>> hs;
+        hs.rows = {b->rows,
+                   {b->sums, 0, "stencil_sums"},
+                   {b->patches, 1, "patch_words"},
+                   {b->constants, 2, "type_constants"}};
+        return bound(hs);
+    }
+    StencilBuffers const& b = std::get<StencilBuffers>(buffers);
+    Shader<SummedRows<kSides>> hs;
+    hs.rows = {{b.weights, 0, "stencil_weights"},
+               {b.zero_masks, 1, "zero_masks"},
+               {b.patches, 2, "patch_words"},
+               {b.order, 3, "order"}};
+    return bound(hs);
 }
 
 } // namespace tessemu

@@ -1,62 +1,90 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/forms/two_stage_form.h"
 
-#include "shaders_cpp/skinning.h"
+#include <algorithm>
+#include <limits>
 
 namespace tessemu {
-
-namespace {
-
-// Fills the texture of moved positions.
-Dispatch skinning(ControlMesh const& mesh, std::vector<float>& moved,
-                  SurfaceSettings const& settings)
-{
-    SkinningComputeShader cs;
-    cs.skin = skin_of(*settings.pose);
-    cs.rest = {positions_of(mesh).floats, 2, "rest_positions"};
-    cs.moved = {std::span(moved).first(mesh.positions.size() * 4), 3, "moved_positions"};
-    auto const groups = std::uint32_t((mesh.positions.size() + 63) / 64);
-    return {"skinning", bind_compute_shader(cs, settings.machine), {groups, 1, 1}};
-}
-
-} // namespace
 
 TwoStageForm::TwoStageForm(std::shared_ptr<RefinedMesh const> mesh, std::vector<Kind> kinds)
     : PatchMesh(std::move(mesh)),
       kinds_(std::move(kinds)),
       rings_(this->mesh().topology()),
-      groups_(kinds_.size())
+      groups_(kinds_.size()),
+      wide_(kinds_.size())
 {
-    Topology const& topology = this->mesh().topology();
-    for (std::uint32_t v = 0; v < this->mesh().mesh().positions.size(); ++v)
-        if (!topology.ring(v).empty() && topology.valence(v) > std::uint32_t(RingLayout::kEdges))
-            throw LimitError("edges at " + this->mesh().vertex_in_words(v) +
-                                 ", by the vertex shader's output registers,",
-                             topology.valence(v), std::uint64_t(RingLayout::kEdges));
     for (double c : make_ring_angles()) angles_.push_back(float(c));
+}
+
+std::uint32_t TwoStageForm::most_edges(std::uint32_t face) const
+{
+    std::uint32_t most = 0;
+    for (std::uint32_t v : mesh().mesh().face(face))
+        most = std::max(most, mesh().topology().valence(v));
+    return most;
 }
 
 void TwoStageForm::make_tables()
 {
+    std::vector<char> const hidden = hidden_faces(mesh(), warnings_);
+    std::size_t wide = 0;
+    std::uint32_t most = 0, first = std::numeric_limits<std::uint32_t>::max();
+    for (std::uint32_t f = 0; f < mesh().mesh().faces(); ++f) {
+        if (hidden[f]) continue;
+        std::uint32_t const edges = most_edges(f);
+        bool const is_wide = edges > std::uint32_t(RingLayout::kEdges);
+        add_patch(f, is_wide);
+        if (!is_wide) continue;
+        ++wide, most = std::max(most, edges);
+        first = std::min(first, mesh().base().file_face(mesh().place(f).face));
+    }
+    if (wide)
+        another_way_ = {first, std::to_string(wide) + (wide == 1 ? " patch has" : " patches have") +
+                                   " a vertex of more than " + std::to_string(RingLayout::kEdges) +
+                                   " edges (up to " + std::to_string(most) +
+                                   "): a dispatch makes their corners before the draw"};
+}
+
+void TwoStageForm::add_patch(std::uint32_t f, bool wide)
+{
     Topology const& topology = mesh().topology();
     ControlMesh const& control = mesh().mesh();
-    std::vector<char> const hidden = hidden_faces(mesh(), warnings_);
-    for (std::uint32_t f = 0; f < control.faces(); ++f) {
-        if (hidden[f]) continue;
-        auto const face = control.face(f);
-        auto const n = std::uint32_t(face.size());
-        Group& g = groups_[kind_of(f)];
-        g.patches.push_back(mesh().place(f));
-        g.indices.insert(g.indices.end(), face.begin(), face.end());
-        std::uint32_t bits = 0;
-        for (std::uint32_t i = 0; i < n; ++i) {
-            HalfEdge const h = control.face_start[f] + i;
+    auto const face = control.face(f);
+    auto const n = std::uint32_t(face.size());
+    Group& g = wide ? wide_[kind_of(f)] : groups_[kind_of(f)];
+    g.patches.push_back(mesh().place(f));
+    std::uint32_t bits = 0;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        HalfEdge const h = control.face_start[f] + i;
+        if (wide) {
+            WideRing const ring =
+                wide_ring(int(topology.ring(face[i]).size()), topology.is_boundary(face[i]));
+            auto const edges = window_edges(topology, h);
+            g.indices.push_back(std::uint32_t(g.indices.size()));
+            g.windows.insert(g.windows.end(), {face[i], ring.first_constant, edges[0], edges[1],
+                                               edges[2], edges[3]});
+            g.offsets.push_back(1u | 2u << 8 | ring.row << 16); // e+ and e- in the window
+        } else {
+            g.indices.push_back(face[i]);
             g.offsets.push_back(corner_offsets(topology, h));
-            if (face[i] > face[(i + 1) % n]) bits |= 1u << i;
-            if (topology.twin(h) == Topology::kNone) bits |= 256u << i;
         }
-        g.edges.push_back(bits);
+        if (face[i] > face[(i + 1) % n]) bits |= 1u << i;
+        if (topology.twin(h) == Topology::kNone) bits |= 256u << i;
     }
+    g.edges.push_back(bits);
+}
+
+// Rows of the angles behind those of all meshes: so a row is no number of an edge in a window, and
+// the hull shader finds a window's ring nowhere closed.
+TwoStageForm::WideRing TwoStageForm::wide_ring(int faces, bool boundary)
+{
+    auto const [it, fresh] = wide_rings_.try_emplace({faces, boundary});
+    if (fresh) {
+        it->second = {std::uint32_t(wide_constants_.size()), std::uint32_t(angles_.size() / 2)};
+        for (double c : wide_constants(faces, boundary)) wide_constants_.push_back(float(c));
+        for (double c : ring_angles(faces, boundary)) angles_.push_back(float(c));
+    }
+    return it->second;
 }
 
 CommandList TwoStageForm::commands(SurfaceSettings const& settings) const
@@ -66,11 +94,8 @@ CommandList TwoStageForm::commands(SurfaceSettings const& settings) const
     VertexSource vertices = positions_of(mesh().mesh());
     std::span<float const> positions = rings_.positions;
     if (settings.pose) {
-        auto const moved = std::make_shared<std::vector<float>>(rings_.positions.size());
-        list.memory.push_back(moved);
-        list.commands.emplace_back(skinning(mesh().mesh(), *moved, settings));
-        positions = *moved;
-        vertices = {positions, 3, 4};
+        vertices = add_skinning(list, mesh().mesh(), settings, rings_.positions.size() / 4);
+        positions = vertices.floats;
     }
     RingTextures textures;
     textures.rings = {rings_.rings, 0, "ring_heads"};
@@ -87,14 +112,41 @@ CommandList TwoStageForm::commands(SurfaceSettings const& settings) const
                         domain_shader(k, settings)},
                        settings);
     }
+    add_wide_draws(list, textures, settings);
     return list;
+}
+
+void TwoStageForm::add_wide_draws(CommandList& list, RingTextures const& textures,
+                                  SurfaceSettings const& settings) const
+{
+    constexpr std::size_t kFloats = scalar_count<RingWindow<float>>();
+    for (std::size_t k = 0; k < wide_.size(); ++k) {
+        Group const& g = wide_[k];
+        if (g.patches.empty()) continue;
+        auto const windows = std::make_shared<std::vector<float>>(g.indices.size() * kFloats);
+        list.memory.push_back(windows);
+        list.commands.emplace_back(
+            Dispatch{"ring windows",
+                     window_shader(textures, {g.windows, wide_constants_, *windows}, settings),
+                     groups_for(g.indices.size(), 64)});
+        add_patch_draw(list, mesh(),
+                       {kinds_[k].kind,
+                        {*windows, int(kFloats), int(kFloats)},
+                        kinds_[k].sides,
+                        g.indices,
+                        g.patches,
+                        bind_vertex_shader(RingWindowVertexShader{}, settings.machine),
+                        hull_shader(k, {g.offsets, g.edges, angles_}, settings),
+                        domain_shader(k, settings)},
+                       settings);
+    }
 }
 
 std::vector<PatchCount> TwoStageForm::patch_counts() const
 {
     std::vector<PatchCount> out;
     for (std::size_t k = 0; k < groups_.size(); ++k)
-        if (std::size_t const n = groups_[k].patches.size())
+        if (std::size_t const n = groups_[k].patches.size() + wide_[k].patches.size())
             out.push_back({kinds_[k].kind, n, 1, kinds_[k].sides, kinds_[k].sides});
     return out;
 }

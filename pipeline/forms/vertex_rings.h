@@ -4,7 +4,9 @@
 #pragma once
 
 #include "pipeline/mesh/topology.h"
-#include "shaders_cpp/two_stage_form/ring_vertex.h"
+#include "shaders_cpp/two_stage_form/ring_window.h"
+
+#include <array>
 
 namespace tessemu {
 
@@ -14,7 +16,7 @@ struct VertexRings {
     std::vector<float> positions; ///< four floats a texel
     int height = 0;               ///< rows of the position texture
 
-    /// Of vertices with up to RingLayout::kEdges edges. Those without faces get an empty ring.
+    /// Rings of any size. Vertices without faces get an empty one.
     explicit VertexRings(Topology const& topology);
 };
 
@@ -22,6 +24,11 @@ struct VertexRings {
 /// row of its vertex in the ring tables, as CornerTables::offsets has it.
 std::uint32_t corner_offsets(Topology const& topology, HalfEdge corner);
 
+/// CornerWindow::kEdges of a corner of a face.
+std::array<std::uint32_t, 4> window_edges(Topology const& topology, HalfEdge corner);
+
+/// A row of CornerTables::angles.
+std::array<double, 2> ring_angles(int faces, bool boundary);
 /// CornerTables::angles: each row's cosine, cos(2pi/n), boundary cos(pi/k), a corner 0; and
 /// sin(2pi/n).
 std::vector<double> make_ring_angles();

@@ -52,11 +52,14 @@ void find_neighbourhood(Topology const& topology, std::uint32_t face, Neighbourh
     out.rotation = best;
     out.inputs.clear();
     out.key.clear();
+    auto const add_to_key = [&](std::uint32_t i) {
+        out.key.push_back(char(i));
+        out.key.push_back(char(i >> 8));
+    };
     auto const local = [&](std::uint32_t v) {
         auto const i = int(std::find(out.inputs.begin(), out.inputs.end(), v) - out.inputs.begin());
         if (i == int(out.inputs.size())) out.inputs.push_back(v);
-        out.key.push_back(char(i));
-        out.key.push_back(char(i >> 8));
+        add_to_key(std::uint32_t(i));
         return i;
     };
     out.key.push_back(char(sides));
@@ -72,8 +75,8 @@ void find_neighbourhood(Topology const& topology, std::uint32_t face, Neighbourh
         out.ring_shift[i] = c.boundary ? 0 : int((n - j) % n);
         c.faces.resize(n);
         out.key.push_back(char(c.boundary));
-        out.key.push_back(char(n));
-        out.key.push_back(char(c.position));
+        add_to_key(n);
+        add_to_key(std::uint32_t(c.position));
         for (std::uint32_t k = 0; k < n; ++k) {
             HalfEdge g = ring[c.boundary ? k : (j + k) % n];
             auto& f = c.faces[k];

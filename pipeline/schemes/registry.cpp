@@ -53,6 +53,7 @@ std::string in_words(MeshRequirements const& t)
     else if (t.quads && t.steps_with_polygons)
         s += ", larger faces" + after(t.steps_with_polygons);
     if (!t.boundary) s += ", closed meshes only";
+    if (t.edges != t.kAnyNumber) s += ", at most " + std::to_string(t.edges) + " edges at a vertex";
     if (!t.creases && !t.corners)
         s += "; creases and corners are drawn smooth";
     else if (!t.creases || !t.corners)
@@ -113,13 +114,18 @@ struct MeshFacts {
     std::uint32_t first_quad = 0, first_triangle = 0, first_polygon = 0;
     std::uint32_t boundary_face = 0, boundary_vertex = 0;
     bool boundary = false;
+    // The most edges at a vertex, and the most sides of a face, which are edges of the vertex that
+    // a step of subdivision puts into it.
+    std::uint32_t edges = 0, edges_face = 0, edges_vertex = 0;
+    std::uint32_t sides = 0, largest_face = 0;
 
     // The file's numbers.
     void name_as(ControlMesh const& mesh)
     {
-        for (std::uint32_t* f : {&first_quad, &first_triangle, &first_polygon, &boundary_face})
+        for (std::uint32_t* f : {&first_quad, &first_triangle, &first_polygon, &boundary_face,
+                                 &edges_face, &largest_face})
             *f = mesh.file_face(*f);
-        boundary_vertex = mesh.file_vertex(boundary_vertex);
+        for (std::uint32_t* v : {&boundary_vertex, &edges_vertex}) *v = mesh.file_vertex(*v);
     }
 };
 
@@ -133,9 +139,13 @@ MeshFacts facts_of(Topology const& topology)
         if (face.size() > 4) ++out.polygons, out.first_polygon = f;
         if (face.size() == 4) ++out.quads, out.first_quad = f;
         if (face.size() == 3) ++out.triangles, out.first_triangle = f;
-        for (std::uint32_t v : face)
+        if (face.size() >= out.sides) out.sides = std::uint32_t(face.size()), out.largest_face = f;
+        for (std::uint32_t v : face) {
             if (topology.is_boundary(v))
                 out.boundary = true, out.boundary_face = f, out.boundary_vertex = v;
+            if (std::uint32_t const n = topology.valence(v); n >= out.edges)
+                out.edges = n, out.edges_face = f, out.edges_vertex = v;
+        }
     }
     out.name_as(mesh);
     return out;
@@ -149,6 +159,8 @@ int steps_of(MeshRequirements const& t, bool polygons, int subdivide)
 bool takes(MeshRequirements const& t, MeshFacts const& m, int subdivide)
 {
     if (m.boundary && !t.boundary) return false;
+    if (m.edges > t.edges) return false;
+    if (m.sides > t.edges && steps_of(t, m.polygons > 0, subdivide) > 0) return false;
     if (steps_of(t, m.polygons > 0, subdivide) > 0) return t.quads; // which it makes of all faces
     return !m.polygons && (t.quads || !m.quads) && (t.triangles || !m.triangles);
 }
@@ -178,10 +190,20 @@ void refuse(SchemeInfo const& info, MeshFacts const& m, int subdivide)
         if (!info.takes.quads && m.quads) sides(good, "quads", m.quads, m.first_quad);
         if (m.polygons) sides(good, "larger", m.polygons, m.first_polygon);
     }
-    throw MeshError(m.boundary_face, info.name + " draws closed meshes only: face " +
-                                         std::to_string(m.boundary_face + 1) + " has vertex " +
-                                         std::to_string(m.boundary_vertex + 1) +
-                                         " on the boundary" + help);
+    if (m.boundary && !info.takes.boundary)
+        throw MeshError(m.boundary_face, info.name + " draws closed meshes only: face " +
+                                             std::to_string(m.boundary_face + 1) + " has vertex " +
+                                             std::to_string(m.boundary_vertex + 1) +
+                                             " on the boundary" + help);
+    std::string const most =
+        info.name + " draws vertices of at most " + std::to_string(info.takes.edges) + " edges: ";
+    if (m.edges > info.takes.edges)
+        throw MeshError(m.edges_face, most + "vertex " + std::to_string(m.edges_vertex + 1) +
+                                          " of face " + std::to_string(m.edges_face + 1) + " has " +
+                                          std::to_string(m.edges) + help);
+    throw MeshError(m.largest_face, most + "a step of subdivision makes one of " +
+                                        std::to_string(m.sides) + " in face " +
+                                        std::to_string(m.largest_face + 1) + help);
 }
 
 void warn_of_tags(SchemeInfo const& info, Topology const& topology, std::vector<std::string>& out)
@@ -249,6 +271,14 @@ SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions c
     SchemeInfo const info = scheme.info();
     SchemeOnMesh out = refine(info, std::move(mesh), options, true);
     out.patches = scheme.build(out.mesh, out.parameters);
+    if (auto const other = out.patches->another_way()) {
+        if (options.strict)
+            throw MeshError(other->face, other->what +
+                                             ", which --strict refuses: the first is of "
+                                             "face " +
+                                             std::to_string(other->face + 1));
+        out.warnings.push_back(other->what);
+    }
     std::vector<std::string> const more = out.patches->warnings();
     out.warnings.insert(out.warnings.end(), more.begin(), more.end());
     warn_of_tags(info, out.mesh->base_topology(), out.warnings);

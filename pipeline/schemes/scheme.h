@@ -46,6 +46,8 @@ private:
 struct MeshRequirements {
     bool quads = true, triangles = true, boundary = true;
     bool creases = false, corners = false; ///< honoured; otherwise drawn smooth, with a warning
+    std::uint32_t edges = kAnyNumber;      ///< at a vertex, at most
+    static constexpr std::uint32_t kAnyNumber = std::numeric_limits<std::uint32_t>::max();
     /// Steps of subdivision that the scheme asks for: of a mesh of triangles and quads, and where a
     /// face has more sides.
     int steps = 0, steps_with_polygons = 1;
@@ -67,7 +69,6 @@ public:
     virtual SchemeInfo info() const = 0;
     /// \param mesh        that meets info().takes
     /// \param parameters  all of info().parameters
-    /// Throws LimitError for a patch that no draw can hold.
     virtual std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
                                              Parameters const& parameters) const = 0;
 };
@@ -97,7 +98,7 @@ struct BuildOptions {
     /// Steps of subdivision beyond those that the scheme asks for, 0 to 6.
     int subdivide = 0;
     ParameterTexts set = {};
-    /// Refuses a mesh that would have to be cut or to lose faces.
+    /// Refuses a mesh that would have to be cut, to lose faces, or to be drawn in another way.
     bool strict = false;
 };
 

@@ -8,10 +8,11 @@
 
 namespace tessemu {
 
-/// \tparam Weight  float; double in tests of the formulas
-template <class Weight = float>
-struct AccHullShader : StencilHullShader<TessellatorDomain::Quad, Weight> {
-    using Sums = StencilHullShader<TessellatorDomain::Quad, Weight>;
+/// \tparam Rows  SummedRows or GatheredRows
+template <class Rows = SummedRows<4>>
+struct AccHullShader : StencilHullShader<TessellatorDomain::Quad, Rows> {
+    using Stencils = StencilHullShader<TessellatorDomain::Quad, Rows>;
+    using Stencils::rows;
     template <class T> using ControlPoint = AccControlPoint<T>;
 
     int control_points() const { return AccLayout::kPoints; }
@@ -24,13 +25,13 @@ struct AccHullShader : StencilHullShader<TessellatorDomain::Quad, Weight> {
         T const zero(0);
         float3<T> const sum = when(
             id < Int(AccLayout::kCosines),
-            [&]() -> float3<T> { return Sums::template stencil_row<T>(patch, in, id); },
+            [&]() -> float3<T> { return rows.template point<T>(patch, in, id); },
             float3<T>(zero, zero, zero));
         return when(
             id == Int(AccLayout::kCosines),
             [&] {
-                std::int32_t const at = Sums::template constants<T>(patch, in.size());
-                auto const c = [&](int i) -> T { return load<T>(Sums::weights, at + i); };
+                std::int32_t const at = rows.template first_constant<T>(patch, in.size());
+                auto const c = [&](int i) -> T { return load<T>(rows.constants(), at + i); };
                 return AccControlPoint<T>{{c(0), c(1), c(2), c(3)}};
             },
             AccControlPoint<T>{{sum, zero}});
@@ -41,7 +42,7 @@ struct AccHullShader : StencilHullShader<TessellatorDomain::Quad, Weight> {
                                   ControlPoints<AccControlPoint<T>> const& out,
                                   ControlPoints<EdgeRegister<T>> const& registers) const
     {
-        return Sums::factors.template factors<TessellatorDomain::Quad, T>(
+        return Stencils::factors.template factors<TessellatorDomain::Quad, T>(
             [&](int k) { return AccQuadInside::edge<T>(out, k); },
             [&](int k) { return registers[4 * k].reversed > T(0); });
     }

@@ -1,19 +1,17 @@
-// Hull shader of the stencil form, LOOP09 section 4.3: each output point is a weighted sum of the
-// patch's input vertices, with weights by connectivity type.
+// Hull shader of the stencil form, LOOP09 section 4.3: each output point is a row of the patch's
+// stencil, a weighted sum of vertices.
 //
-//     out_row = sum over k of W[type][order[k]][row] * in[order[k]]
-//
-// The sum runs in ascending global vertex id, through an order index stored per patch, so that
-// points which two patches share have equal bits in both. A bit mask per row tells the zero weights
-// apart; they are skipped. Rows: the control points, then the transversal fields of the edges (4 an
-// edge), then the tangents of the corners (a pair for each place where the corner's ring may
-// begin).
+// Rows: the control points, then the transversal fields of the edges (4 an edge), then the tangents
+// of the corners (two each; among a type's tables, a pair for each place where the corner's ring
+// may begin). Where rows come from is a part of its own: sums over the patch's inputs, or a buffer
+// that a dispatch filled, for patches with more inputs than a patch may have.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "emu/hull_shader.h"
 #include "shaders_cpp/cubic_edges.h"
+#include "shaders_cpp/stencil_form/stencil_row.h"
 #include "shaders_cpp/tess_factor_rule.h"
 
 namespace tessemu {
@@ -28,72 +26,156 @@ struct StencilPatchWords {
     static constexpr int count(int sides) { return 4 + sides; }
 };
 
-/// \tparam Weight     float; double in tests of the formulas
-/// \tparam kDomain_   Quad or Tri
-template <TessellatorDomain kDomain_, class Weight = float> struct StencilHullShader {
-    static constexpr TessellatorDomain kDomain = kDomain_;
-    static constexpr int kSides = sides_of(kDomain);
-    template <class T> using Input = ControlVertex<T>;
-    template <class T> using ControlPoint = ControlVertex<T>;
-    template <class T> using PatchConstant = EdgeRegister<T>;
-
-    int points = 20;        ///< output control points that are sums
+/// Rows summed over the patch's inputs, with weights by connectivity type:
+///
+///     row = sum over k of W[type][order[k]][row] * in[order[k]]
+///
+/// The sum runs in ascending global vertex id, through an order index stored per patch, so that
+/// points which two patches share have equal bits in both. A bit mask per row tells the zero
+/// weights apart; they are skipped.
+///
+/// \tparam Weight  float; double in tests of the formulas
+template <int kSides, class Weight = float> struct SummedRows {
     Buffer<Weight> weights; ///< [type][input][row], then the type's constants
     /// [type][row]: bit i is set where the weight of input i is not 0.
     Buffer<std::uint32_t> zero_masks;
     Buffer<std::uint32_t> patches; ///< [patch][StencilPatchWords]
     Buffer<std::uint8_t> order;    ///< [patch][k]: inputs in ascending global vertex id
-    TessFactorRule factors;
 
-    int control_points() const { return points; }
-    int patch_constants() const { return 6 * kSides; }
     std::vector<ResourceInfo> resources() const
     {
         return {weights.info(), zero_masks.info(), patches.info(), order.info()};
     }
 
-    /// Where the constants of the patch's type begin among the weights.
-    template <class T> std::int32_t constants(PatchInput patch, int inputs) const
-    {
-        std::int32_t const words = patch.primitive_id * StencilPatchWords::count(kSides);
-        return load<T>(patches, words + StencilPatchWords::kWeights) +
-               inputs * load<T>(patches, words + StencilPatchWords::kRows);
-    }
-
-    /// One row of the stencil.
-    ///
     /// \param row  the table's row, per lane
-    /// \cost       3 mul, 3 add for each input with a non-zero weight
+    /// \cost       that of stencil_row, a term for each input with a non-zero weight
     template <class T>
-    float3<T> stencil_row(PatchInput patch, ControlPoints<ControlVertex<T>> const& in,
-                          int_of<T> row) const
+    float3<T> row(PatchInput patch, ControlPoints<ControlVertex<T>> const& in, int_of<T> row) const
     {
         using Int = int_of<T>;
-        Routine<T> const here("stencil_row");
         std::int32_t const id = patch.primitive_id;
-        std::int32_t const words = id * StencilPatchWords::count(kSides);
-        std::int32_t const rows = load<T>(patches, words + StencilPatchWords::kRows);
-        Int const first_weight = Int(load<T>(patches, words + StencilPatchWords::kWeights)) + row;
-        Int const mask =
-            load<T>(zero_masks, Int(load<T>(patches, words + StencilPatchWords::kMasks)) + row);
-        float3<T> sum(T(0), T(0), T(0));
-        for (int k : loop<T>(in.size())) {
+        std::int32_t const rows = word<T>(patch, StencilPatchWords::kRows);
+        Int const first_weight = Int(word<T>(patch, StencilPatchWords::kWeights)) + row;
+        Int const mask = load<T>(zero_masks, Int(word<T>(patch, StencilPatchWords::kMasks)) + row);
+        return stencil_row<T>(in.size(), [&](int k) {
             std::int32_t const i = load<T>(order, id * in.size() + k);
-            sum = when(((mask >> Int(i)) & Int(1)) != Int(0),
-                       [&]() -> float3<T> {
-                           T const w = load<T>(weights, first_weight + Int(i * rows));
-                           return sum + w * in[i].position;
-                       },
-                       sum);
-        }
-        return sum;
+            return StencilTerm{
+                mask_of<T>(((mask >> Int(i)) & Int(1)) != Int(0)),
+                [=, this]() -> T { return load<T>(weights, first_weight + Int(i * rows)); },
+                [=, &in]() -> float3<T> { return in[i].position; }};
+        });
     }
+    /// The row of control point `id`.
+    template <class T>
+    float3<T> point(PatchInput patch, ControlPoints<ControlVertex<T>> const& in, int_of<T> id) const
+    {
+        return row<T>(patch, in, id);
+    }
+    template <class T> std::int32_t reversed_edges(PatchInput patch) const
+    {
+        return word<T>(patch, StencilPatchWords::kReversed);
+    }
+    /// The first of the corner's two tangents.
+    template <class T> int_of<T> corner_row(PatchInput patch, int_of<T> corner) const
+    {
+        return load<T>(patches,
+                       int_of<T>(first_word(patch) + StencilPatchWords::kCornerRows) + corner);
+    }
+    /// Where the constants of the patch's type begin in `constants()`.
+    template <class T> std::int32_t first_constant(PatchInput patch, int inputs) const
+    {
+        return word<T>(patch, StencilPatchWords::kWeights) +
+               inputs * word<T>(patch, StencilPatchWords::kRows);
+    }
+    Buffer<Weight> const& constants() const { return weights; }
+
+private:
+    static std::int32_t first_word(PatchInput patch)
+    {
+        return patch.primitive_id * StencilPatchWords::count(kSides);
+    }
+    template <class T> std::int32_t word(PatchInput patch, int which) const
+    {
+        return load<T>(patches, first_word(patch) + which);
+    }
+};
+
+/// What the hull shader knows of a patch whose rows a dispatch sums.
+struct GatheredPatchWords {
+    static constexpr int kReversed = 0; ///< as StencilPatchWords'
+    static constexpr int kConstant = 1; ///< first constant of the type
+    static constexpr int kCount = 2;
+};
+
+/// Rows that a dispatch has summed. The control points, first of a patch's rows, arrive as its
+/// vertices and are passed on; the others are read from the buffer.
+template <int kSides> struct GatheredRows {
+    int rows = 0;                  ///< of a patch: control points, 4 an edge, 2 a corner
+    Buffer<float> sums;            ///< [patch][row][3]
+    Buffer<std::uint32_t> patches; ///< [patch][GatheredPatchWords]
+    Buffer<float> type_constants;
+
+    std::vector<ResourceInfo> resources() const
+    {
+        return {sums.info(), patches.info(), type_constants.info()};
+    }
+    template <class T>
+    float3<T> row(PatchInput patch, ControlPoints<ControlVertex<T>> const&, int_of<T> row) const
+    {
+        using Int = int_of<T>;
+        Int const first = (Int(patch.primitive_id * rows) + row) * Int(3);
+        return {load<T>(sums, first), load<T>(sums, first + Int(1)), load<T>(sums, first + Int(2))};
+    }
+    template <class T>
+    float3<T> point(PatchInput, ControlPoints<ControlVertex<T>> const& in, int_of<T> id) const
+    {
+        return in[id].position;
+    }
+    template <class T> std::int32_t reversed_edges(PatchInput patch) const
+    {
+        return word<T>(patch, GatheredPatchWords::kReversed);
+    }
+    template <class T> int_of<T> corner_row(PatchInput, int_of<T> corner) const
+    {
+        return int_of<T>(rows - 2 * kSides) + (corner << int_of<T>(1));
+    }
+    template <class T> std::int32_t first_constant(PatchInput patch, int) const
+    {
+        return word<T>(patch, GatheredPatchWords::kConstant);
+    }
+    Buffer<float> const& constants() const { return type_constants; }
+
+private:
+    template <class T> std::int32_t word(PatchInput patch, int which) const
+    {
+        return load<T>(patches, patch.primitive_id * GatheredPatchWords::kCount + which);
+    }
+};
+
+/// \tparam kDomain_  Quad or Tri
+/// \tparam Rows_     SummedRows or GatheredRows
+template <TessellatorDomain kDomain_, class Rows_ = SummedRows<sides_of(kDomain_)>>
+struct StencilHullShader {
+    static constexpr TessellatorDomain kDomain = kDomain_;
+    static constexpr int kSides = sides_of(kDomain);
+    using Rows = Rows_;
+    template <class T> using Input = ControlVertex<T>;
+    template <class T> using ControlPoint = ControlVertex<T>;
+    template <class T> using PatchConstant = EdgeRegister<T>;
+
+    int points = 20; ///< output control points that are rows
+    Rows rows;
+    TessFactorRule factors;
+
+    int control_points() const { return points; }
+    int patch_constants() const { return 6 * kSides; }
+    std::vector<ResourceInfo> resources() const { return rows.resources(); }
 
     template <class T>
     ControlVertex<T> control_point(PatchInput patch, ControlPoints<ControlVertex<T>> const& in,
                                    int_of<T> id) const
     {
-        return {stencil_row<T>(patch, in, id)};
+        return {rows.template point<T>(patch, in, id)};
     }
 
     /// Edge registers in canonical direction. Rows E_2 and E_3 are as corner k+1 has them, which
@@ -104,16 +186,14 @@ template <TessellatorDomain kDomain_, class Weight = float> struct StencilHullSh
                                    auto const&, int_of<T> id) const
     {
         using Int = int_of<T>;
-        std::int32_t const words = patch.primitive_id * StencilPatchWords::count(kSides);
-        Int const bits = Int(load<T>(patches, words + StencilPatchWords::kReversed));
+        Int const bits = Int(rows.template reversed_edges<T>(patch));
         Int const edge = id >> Int(2), m = id & Int(3);
         auto const on_edge = id < Int(4 * kSides);
         auto const reversed = on_edge & (((bits >> (edge & Int(3))) & Int(1)) != Int(0));
         Int const edge_row = Int(points) + (edge << Int(2)) + select(reversed, Int(3) - m, m);
         Int const corner = select(on_edge, Int(0), (id - Int(4 * kSides)) >> Int(1));
-        Int const corner_row =
-            load<T>(patches, Int(words + StencilPatchWords::kCornerRows) + corner) + (id & Int(1));
-        float3<T> const v = stencil_row<T>(patch, in, select(on_edge, edge_row, corner_row));
+        Int const corner_row = rows.template corner_row<T>(patch, corner) + (id & Int(1));
+        float3<T> const v = rows.template row<T>(patch, in, select(on_edge, edge_row, corner_row));
         auto const negative = on_edge & (m >= Int(2));
         return {select(negative, -v, v), select(reversed, T(1), T(0))};
     }
@@ -128,5 +208,8 @@ template <TessellatorDomain kDomain_, class Weight = float> struct StencilHullSh
             [&](int k) { return registers[4 * k].reversed > T(0); });
     }
 };
+template <class Rows>
+using StencilQuadHullShader = StencilHullShader<TessellatorDomain::Quad, Rows>;
+template <class Rows> using StencilTriHullShader = StencilHullShader<TessellatorDomain::Tri, Rows>;
 
 } // namespace tessemu

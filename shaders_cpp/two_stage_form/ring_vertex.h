@@ -19,7 +19,8 @@ struct RingLayout {
 };
 
 template <class T> struct RingVertex {
-    static constexpr int kVectors = RingLayout::kVectors;
+    static constexpr int kVectors = RingLayout::kVectors, kP = RingLayout::kP,
+                         kNormal = RingLayout::kNormal;
     std::array<float3<T>, kVectors> vectors;
     static constexpr auto signature() { return std::tuple{&RingVertex::vectors}; }
 };
@@ -35,7 +36,7 @@ struct RingTextures {
     static constexpr int kTextureWidth = 1024;
     static constexpr std::uint32_t kNone = 0xffffffffu;
 
-    Buffer<std::uint32_t> rings;   ///< [vertex][2]: first entry; faces, plus 256 on the boundary
+    Buffer<std::uint32_t> rings;   ///< [vertex][2]: first entry; faces, plus 2^16 on the boundary
     Buffer<std::uint32_t> entries; ///< [edge][2]: its far end; the diagonal vertex of the face
                                    ///< after it, kNone in a triangle
     Texture2D positions;           ///< vertex i at (i % kTextureWidth, i / kTextureWidth)
@@ -50,8 +51,8 @@ struct RingTextures {
         Int const head = vertex << Int(1);
         Int const first = Int(load<T>(rings, head)) << Int(1);
         Int const word = Int(load<T>(rings, head + Int(1)));
-        Int const n = word & Int(255);
-        return {first, n, n + (word >> Int(8)), (word & Int(256)) != Int(0)};
+        Int const n = word & Int(0xffff);
+        return {first, n, n + (word >> Int(16)), (word & Int(0x10000)) != Int(0)};
     }
     template <class T> float3<T> position(int_of<T> id) const
     {

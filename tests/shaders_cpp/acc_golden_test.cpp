@@ -18,7 +18,7 @@ template <class F> test::StencilPatch<F> acc_patch(Topology const& topology, std
 {
     Neighbourhood n;
     find_neighbourhood(topology, face, n);
-    test::StencilPatch<F> const rotated = test::run_stencils<F, AccHullShader<F>>(
+    test::StencilPatch<F> const rotated = test::run_stencils<F, AccHullShader<SummedRows<4, F>>>(
         topology.mesh(), n, make_acc_stencils(n, false, false));
     test::StencilPatch<F> out = rotated;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -107,7 +107,7 @@ TEST(AccEdge, SharedEdgeFieldIsParallelToThePatchsOwnNormal)
         Neighbourhood n;
         find_neighbourhood(topology, f, n);
         PatchStencils const s = make_acc_stencils(n, false, false);
-        auto const p = test::run_stencils<double, AccHullShader<double>>(mesh, n, s);
+        auto const p = test::run_stencils<double, AccHullShader<SummedRows<4, double>>>(mesh, n, s);
         ControlPoints<AccControlPoint<double>> const patch(p.points.data(), AccLayout::kPoints);
         for (int k = 0; k < 4; ++k) {
             float3<double> W[4];

@@ -78,16 +78,13 @@ TEST(StencilRow, CostsThreeMultiplicationsPerInput)
         std::vector<std::uint32_t> const masks{0xffffffffu}, words{0, 0, 1, 0, 0, 0, 0, 0};
         std::vector<std::uint8_t> order(static_cast<std::size_t>(inputs));
         std::iota(order.begin(), order.end(), std::uint8_t(0));
-        StencilHullShader<TessellatorDomain::Quad> hs;
-        hs.weights = {weights, 0, "w"};
-        hs.zero_masks = {masks, 1, "m"};
-        hs.patches = {words, 2, "p"};
-        hs.order = {order, 3, "o"};
+        SummedRows<4> const rows{
+            {weights, 0, "w"}, {masks, 1, "m"}, {words, 2, "p"}, {order, 3, "o"}};
         FlopCount const c = tally([&](FlopCount* sink) {
             // A weight from memory is no constant: it meets the control point, which carries the
             // sink.
             ControlPoints<ControlVertex<Tally>> const in(sink, inputs);
-            (void)hs.stencil_row<Tally>({0}, in, 0);
+            (void)rows.row<Tally>({0}, in, 0);
         });
         EXPECT_EQ(flops_loop10(c), std::uint64_t(6 * n + 24));
         EXPECT_EQ(c.mul, std::uint64_t(3 * inputs));

@@ -28,8 +28,9 @@ Patch<F> patch_of(Topology const& topology, std::uint32_t face)
 {
     Neighbourhood n;
     find_neighbourhood(topology, face, n);
-    test::StencilPatch<F> const rotated = test::run_stencils<F, StencilHullShader<kDomain, F>>(
-        topology.mesh(), n, make_gregory_stencils(n, false, {}));
+    test::StencilPatch<F> const rotated =
+        test::run_stencils<F, StencilHullShader<kDomain, SummedRows<sides_of(kDomain), F>>>(
+            topology.mesh(), n, make_gregory_stencils(n, false, {}));
     Patch<F> out{rotated};
     auto const N = std::size_t(n.sides);
     for (std::size_t id = 0; id < 5 * N; ++id)

@@ -61,10 +61,8 @@ StencilPatch<F> run_stencils(ControlMesh const& mesh, Neighbourhood const& n,
               [&](auto a, auto b) { return n.inputs[a] < n.inputs[b]; });
     Hull hs;
     hs.points = s.control_points;
-    hs.weights = {weights, 0, "weights"};
-    hs.zero_masks = {masks, 1, "masks"};
-    hs.patches = {words, 2, "words"};
-    hs.order = {order, 3, "order"};
+    hs.rows = {
+        {weights, 0, "weights"}, {masks, 1, "masks"}, {words, 2, "words"}, {order, 3, "order"}};
     ControlPoints<ControlVertex<F>> const in(input.data(), int(n.inputs.size()));
     out.points.resize(std::size_t(hs.control_points()) * kScalars);
     for (int id = 0; id < hs.control_points(); ++id) {

@@ -32,12 +32,12 @@ private:
         return make_acc_stencils(patch, kind == kRegularQuad,
                                  mesh().base().boundary == BoundaryRule::EdgeOnly);
     }
-    HullShader hull_shader(std::size_t kind, StencilBuffers const& buffers,
+    HullShader hull_shader(std::size_t kind, RowBuffers const& buffers,
                            SurfaceSettings const& s) const override
     {
-        using Regular = StencilHullShader<TessellatorDomain::Quad>;
-        if (kind == kRegularQuad) return stencil_hull_shader<Regular>(buffers, 16, s);
-        return stencil_hull_shader<AccHullShader<>>(buffers, AccLayout::kCosines, s);
+        if (kind == kRegularQuad)
+            return stencil_hull_shader<StencilQuadHullShader, 4>(buffers, 16, s);
+        return stencil_hull_shader<AccHullShader, 4>(buffers, AccLayout::kCosines, s);
     }
     DomainShader domain_shader(std::size_t kind, SurfaceSettings const& s) const override
     {

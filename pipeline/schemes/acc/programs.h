@@ -12,7 +12,8 @@ namespace tessemu {
 /// All of them for a machine's scalar T; `instantiate` is template, or extern template.
 #define TESSEMU_ACC_PROGRAMS(instantiate, T)                                                       \
     instantiate class DomainProgramOn<AccQuadDomainShader, T>;                                     \
-    instantiate class HullProgramOn<AccHullShader<>, T>;
+    instantiate class HullProgramOn<AccHullShader<SummedRows<4>>, T>;                              \
+    instantiate class HullProgramOn<AccHullShader<GatheredRows<4>>, T>;
 
 TESSEMU_ACC_PROGRAMS(extern template, FastScalar)
 TESSEMU_ACC_PROGRAMS(extern template, CheckScalar)

@@ -9,6 +9,7 @@
 #include "shaders_cpp/gregory/corner_domain_shaders.h"
 #include "shaders_cpp/gregory/corner_hull_shader.h"
 #include "shaders_cpp/gregory/ring_vertex_shader.h"
+#include "shaders_cpp/gregory/ring_window_shader.h"
 
 namespace tessemu {
 
@@ -24,7 +25,8 @@ std::vector<SchemeParameter> gregory_parameters();
     instantiate class HullProgramOn<CornerHullShader<TessellatorDomain::Quad, 4>, T>;              \
     instantiate class HullProgramOn<CornerHullShader<TessellatorDomain::Quad, 5>, T>;              \
     instantiate class HullProgramOn<CornerHullShader<TessellatorDomain::Tri, 5>, T>;               \
-    instantiate class VertexProgramOn<RingVertexShader<>, T>;
+    instantiate class VertexProgramOn<RingVertexShader<>, T>;                                      \
+    instantiate class ComputeProgramOn<RingWindowShader, T>;
 
 TESSEMU_GREGORY_PROGRAMS(extern template, FastScalar)
 TESSEMU_GREGORY_PROGRAMS(extern template, CheckScalar)

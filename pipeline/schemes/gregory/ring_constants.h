@@ -9,5 +9,7 @@ namespace tessemu {
 
 /// RingConstants with the paper's lambda(n) times `lambda_scale`; double, to be rounded once.
 std::vector<double> make_ring_constants(double lambda_scale);
+/// The row of one ring, as long as its edges ask for.
+std::vector<double> ring_constants_of(int faces, bool boundary, double lambda_scale);
 
 } // namespace tessemu

@@ -36,13 +36,13 @@ private:
     {
         return make_gregory_stencils(patch, kind == kRegularQuad, parameters_);
     }
-    HullShader hull_shader(std::size_t kind, StencilBuffers const& buffers,
+    HullShader hull_shader(std::size_t kind, RowBuffers const& buffers,
                            SurfaceSettings const& s) const override
     {
-        using Quad = StencilHullShader<TessellatorDomain::Quad>;
-        using Triangle = StencilHullShader<TessellatorDomain::Tri>;
-        if (kind == kGregoryTriangle) return stencil_hull_shader<Triangle>(buffers, 15, s);
-        return stencil_hull_shader<Quad>(buffers, kind == kRegularQuad ? 16 : 20, s);
+        if (kind == kGregoryTriangle)
+            return stencil_hull_shader<StencilTriHullShader, 3>(buffers, 15, s);
+        int const points = kind == kRegularQuad ? 16 : 20;
+        return stencil_hull_shader<StencilQuadHullShader, 4>(buffers, points, s);
     }
     DomainShader domain_shader(std::size_t kind, SurfaceSettings const& s) const override
     {

@@ -19,11 +19,11 @@ public:
         : TwoStageForm(std::move(refined), {{{"regular quad", PatchClass::RegularQuad}, 4},
                                             {{"Gregory quad", PatchClass::IrregularQuad}, 4},
                                             {{"Gregory triangle", PatchClass::Triangle}, 3}}),
+          lambda_scale_(parameters.number("lambda")),
           r_(float(parameters.number("r"))),
           smooth_corners_(mesh().base().boundary == BoundaryRule::EdgeOnly)
     {
-        for (double c : make_ring_constants(parameters.number("lambda")))
-            constants_.push_back(float(c));
+        for (double c : make_ring_constants(lambda_scale_)) constants_.push_back(float(c));
         make_tables();
     }
 
@@ -37,8 +37,21 @@ private:
                                SurfaceSettings const& s) const override
     {
         return bind_vertex_shader(
-            RingVertexShader<>{textures, {constants_, 3, "ring_constants"}, r_, smooth_corners_},
+            RingVertexShader<>{{textures, {constants_, 3, "ring_constants"}, r_, smooth_corners_}},
             s.machine);
+    }
+    std::vector<double> wide_constants(int faces, bool boundary) const override
+    {
+        return ring_constants_of(faces, boundary, lambda_scale_);
+    }
+    ComputeShader window_shader(RingTextures const& textures, WindowBuffers const& b,
+                                SurfaceSettings const& s) const override
+    {
+        RingWindowShader const cs{
+            {textures, {b.constants, 3, "ring_constants"}, r_, smooth_corners_},
+            {b.corners, 4, "corners"},
+            {b.windows, 5, "ring_windows"}};
+        return bind_compute_shader(cs, s.machine);
     }
     HullShader hull_shader(std::size_t kind, CornerBuffers const& buffers,
                            SurfaceSettings const& s) const override
@@ -56,6 +69,7 @@ private:
     }
 
     std::vector<float> constants_;
+    double lambda_scale_;
     float r_;
     bool smooth_corners_;
 };
@@ -64,14 +78,15 @@ class GregoryTwoStage final : public Scheme {
 public:
     SchemeInfo info() const override
     {
-        return {
+        SchemeInfo info{
             "gregory-two-stage",
             "LOOP09",
             "3, 4.1, 4.2, 4.5, 4.6",
-            "the same patches by a vertex shader over one-rings and a hull shader over corners; "
-            "valences up to 15",
+            "the same patches by a vertex shader over one-rings and a hull shader over corners",
             {},
             gregory_parameters()};
+        info.takes.edges = CornerWindow::kMost;
+        return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
                                      Parameters const& parameters) const override

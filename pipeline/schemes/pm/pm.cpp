@@ -62,6 +62,7 @@ public:
             "Pm-patches: quartic Bezier triangles around a centre, 25 coefficients for a quad, 19 "
             "for a triangle; closed meshes only"};
         info.takes.boundary = false;
+        info.takes.edges = RingLayout::kEdges;
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
