@@ -227,7 +227,7 @@ void add_draw(CommandLine& program)
         "  tessemu draw jug --tess 32 --displace studs -o studs.png\n"
         "  tessemu draw jug --animate sway --frames 12 -o sway.png --json sway.json\n"
         "  tessemu draw cage.obj --view error -o error.png");
-    verb.option("-o", o->output, output_path, "picture, .png or .exr");
+    verb.option("-o", o->output, output_path, "picture, .png or .exr; '-': PNG on standard output");
     add_options(verb, o->picture);
     verb.option(
         "--view", o->view, view_parser(),

@@ -53,7 +53,7 @@ void add_export(CommandLine& program)
     Verb& verb = program.add_verb("export", "write the tessellated mesh, patch by patch",
                                   "  tessemu export jug --tess 8 -o jug.ply\n"
                                   "  tessemu export cage.obj --tess 4 --weld -o cage4.obj");
-    verb.required("-o", o->output, output_path, "mesh, .obj or .ply");
+    verb.required("-o", o->output, output_path, "mesh, .obj or .ply; '-': OBJ on standard output");
     verb.flag("--weld", o->weld, "join vertices with equal bits");
     add_options(verb, o->surface);
     add_vertex_cache(verb, o->surface);

@@ -21,6 +21,17 @@ bool is_ignored(int signal)
     return sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
 }
 
+void end_by_signal(sigset_t ending)
+{
+    int signal = 0;
+    if (sigwait(&ending, &signal) != 0) return;
+    remove_temporaries();
+    std::signal(signal, SIG_DFL);
+    pthread_sigmask(SIG_UNBLOCK, &ending, nullptr);
+    kill(getpid(), signal);
+    for (;;) pause();
+}
+
 } // namespace
 
 void set_up_process()
@@ -37,15 +48,11 @@ void set_up_process()
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
         if (!is_ignored(signal)) sigaddset(&ending, signal); // nohup's, and a shell's with &
     pthread_sigmask(SIG_BLOCK, &ending, nullptr);
-    std::thread([ending] {
-        int signal = 0;
-        if (sigwait(&ending, &signal) != 0) return;
-        remove_temporaries();
-        std::signal(signal, SIG_DFL);
+    try {
+        std::thread(end_by_signal, ending).detach();
+    } catch (std::system_error const&) { // no thread to be had: they end the process at once
         pthread_sigmask(SIG_UNBLOCK, &ending, nullptr);
-        kill(getpid(), signal);
-        for (;;) pause();
-    }).detach();
+    }
 }
 
 bool close_standard_output()

@@ -412,6 +412,31 @@ TEST_F(Output, WhatCanFailFailsBeforeTheWork)
                     "missing", "");
 }
 
+TEST_F(Output, AFolderWithoutPermissionIsFoundBeforeTheWork)
+{
+    // Root may write anywhere: the program runs as nobody.
+    std::string const user = geteuid() == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
+    fs::permissions(here, fs::perms(0755));
+    if (shell(user + "$T --version").status != 0) GTEST_SKIP() << "nobody cannot run the program";
+    fs::create_directories(here / "locked");
+    std::ofstream(here / "locked/a.png") << "old";
+    fs::permissions(here / "locked/a.png", fs::perms(0666));
+    fs::permissions(here / "locked", fs::perms(0555));
+    fs::create_directories(here / "hidden");
+    fs::permissions(here / "hidden", fs::perms(0600));
+    for (auto const& [output, words] : std::vector<std::pair<std::string, std::string>>{
+             {"-o locked/b.png", "takes no new file: Permission denied"},
+             {"-o locked/a.png", "takes no new file: Permission denied"},
+             {"--json locked/b.json", "takes no new file: Permission denied"},
+             {"-o hidden/sub/a.png", "hidden/sub: Permission denied"}})
+        expect_one_line(
+            shell("timeout 20 " + user + "$T draw jug --tess 64 --subdivide 6 " + output), words,
+            output);
+    EXPECT_EQ(read("locked/a.png"), "old");
+    fs::permissions(here / "locked", fs::perms(0755)); // so that it can be removed
+    fs::permissions(here / "hidden", fs::perms(0755));
+}
+
 TEST_F(Output, AnInterruptedRunLeavesTheOldFileAndNothingElse)
 {
     std::ofstream(here / "a_0000.png") << "old";
