@@ -68,7 +68,9 @@ VerdictRow row_of(CheckedVerdict const& v)
 
 int run(CheckRequest const& o)
 {
-    if (!o.output.empty()) check_image_path(o.output);
+    RunOutput out(o.run.json);
+    OutputFile* const picture = o.output.empty() ? nullptr : &out.add(o.output);
+    if (picture) picture_format(*picture); // or refuses
     Job job = prepare(o.surface, "check");
     set_picture(job, o.picture, o.surface);
     WatertightSettings s;
@@ -98,9 +100,8 @@ int run(CheckRequest const& o)
     add_run(job.header, job, threads, clock.seconds());
     std::vector<VerdictRow> rows;
     for (CheckedVerdict const& v : verdicts) rows.push_back(row_of(v));
-    if (!o.output.empty()) write_image(draw_cracks(patches, s, verdicts, threads), o.output);
-    write_result(
-        o.run.json, [&] { return check_report(job.header, rows); }, check_table(rows, 3));
+    if (picture) write_image(draw_cracks(patches, s, verdicts, threads), *picture);
+    out.finish([&] { return check_report(job.header, rows); }, check_table(rows, 3));
     return all_hold(verdicts) ? 0 : 1;
 }
 
@@ -115,7 +116,7 @@ void add_check(CommandLine& program)
         "  tessemu check golem\n"
         "  tessemu check cage.obj --tess 7.3 --contraction mixed:5 --displace studs\n"
         "  tessemu check golem --break order --parity 0.02 -o cracks.png --json cracks.json");
-    verb.option("-o", o->output, plain, "the lit picture with cracks in red, .png or .exr");
+    verb.option("-o", o->output, output_path, "the lit picture with cracks in red, .png or .exr");
     verb.option("--break", o->mistake, parse_mistake,
                 "plant a known mistake: order, contraction, factors, normals, fold, weights, "
                 "topleft",
@@ -131,7 +132,10 @@ void add_check(CommandLine& program)
     add_options(verb, o->picture);
     add_options(verb, o->surface);
     add_options(verb, o->run);
-    verb.runs([o] { return run(*o); });
+    verb.runs([o, &verb] {
+        if (o->mistake == Mistake::None) verb.needs({"--break-face"}, "--break");
+        return run(*o);
+    });
 }
 
 } // namespace tessemu

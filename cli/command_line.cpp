@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/command_line.h"
 
+#include "cli/run_output.h"
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+
+#include <sstream>
 
 namespace tessemu {
 
@@ -26,10 +30,8 @@ void Verb::add(Syntax syntax, Set set)
     CLI::Option* const option = app_.add_option(
         s.name, [&o](CLI::results_t const& texts) { return o.texts = texts, true; }, s.about);
     option->type_name(s.type);
-    if (s.many) {
-        option->expected(1, -1)->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-        option->allow_extra_args();
-    }
+    if (s.values != Values::One) option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    if (s.values == Values::Many) option->expected(1, -1)->allow_extra_args();
     if (s.required) option->required();
     if (s.fallback) option->default_str(*s.fallback);
 }
@@ -42,6 +44,17 @@ void Verb::flag(std::string const& name, bool& value, std::string const& about)
 void Verb::exclude(std::string const& a, std::string const& b)
 {
     app_.get_option(a)->excludes(app_.get_option(b));
+}
+
+bool Verb::given(std::string const& name) const
+{
+    return app_.count(name) > 0;
+}
+
+void Verb::needs(std::initializer_list<char const*> names, std::string const& what) const
+{
+    for (char const* name : names)
+        if (given(name)) throw Error(fmt::format("{} needs {}", name, what));
 }
 
 int Verb::parse_and_work() const
@@ -77,38 +90,46 @@ Verb& CommandLine::add_verb(std::string const& name, std::string const& about,
 
 int CommandLine::run(int argc, char const* const* argv)
 {
+    try {
+        return parse_and_work(argc, argv);
+    } catch (std::exception const& e) {
+        print_message(fmt::format("{}: {}\n", name_, e.what()));
+        return 2;
+    }
+}
+
+int CommandLine::parse_and_work(int argc, char const* const* argv)
+{
     if (argc == 1) {
-        fmt::print(stderr, "{}", app_->help());
+        print_message(app_->help());
         return 2;
     }
     // A verb that has options needs one, or an argument: given none, it shows its help.
     if (argc == 2)
         for (auto const& v : verbs_)
             if (v->app_.get_name() == argv[1] && !v->options_.empty()) {
-                fmt::print(stderr, "{}", v->app_.help());
+                print_message(v->app_.help(name_));
                 return 2;
             }
     try {
         app_->parse(argc, argv);
     } catch (CLI::ParseError const& e) {
-        if (e.get_exit_code() == 0) return app_->exit(e);
+        if (e.get_exit_code() == 0) {
+            std::ostringstream text;
+            app_->exit(e, text);
+            print(text.str());
+            return 0;
+        }
         if (app_->get_subcommands().empty()) { // CLI11 does not say which word it did not know
             std::string verbs;
             for (auto const& v : verbs_) verbs += " " + v->app_.get_name();
-            fmt::print(stderr, "{}: '{}' is not a verb; there are{}\n", name_, argv[1], verbs);
-            return 2;
+            throw Error(fmt::format("'{}' is not a verb; there are{}", argv[1], verbs));
         }
-        fmt::print(stderr, "{}: {}\n", name_, e.what());
-        return 2;
+        throw;
     }
-    try {
-        for (auto const& v : verbs_)
-            if (v->app_.parsed()) return v->parse_and_work();
-        return 2;
-    } catch (std::exception const& e) {
-        fmt::print(stderr, "{}: {}\n", name_, e.what());
-        return 2;
-    }
+    for (auto const& v : verbs_)
+        if (v->app_.parsed()) return v->parse_and_work();
+    return 2;
 }
 
 } // namespace tessemu

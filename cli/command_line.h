@@ -5,6 +5,7 @@
 #pragma once
 
 #include <functional>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -54,25 +55,35 @@ public:
     void list(std::string const& name, std::vector<T>& values, Parse parse,
               std::string const& about)
     {
-        add({name, about, type_of<T>(), {}, false, true},
-            [&values, p = std::move(parse)](std::string const& text, std::string const& option) {
-                values.push_back(p(text, option));
-            });
+        add({name, about, type_of<T>(), {}, false, Values::Many}, append(values, std::move(parse)));
+    }
+    /// May be given any number of times, with a value each.
+    template <class T, class Parse>
+    void repeated(std::string const& name, std::vector<T>& values, Parse parse,
+                  std::string const& about)
+    {
+        add({name, about, type_of<T>(), {}, false, Values::OneEach},
+            append(values, std::move(parse)));
     }
     void flag(std::string const& name, bool& value, std::string const& about);
     /// At most one of two options may be given.
     void exclude(std::string const& a, std::string const& b);
+    bool given(std::string const& name) const;
+    /// Throws Error where one of the options is given, which does nothing without `what`.
+    void needs(std::initializer_list<char const*> names, std::string const& what) const;
     /// \param work  gives the exit status
     void runs(std::function<int()> work) { work_ = std::move(work); }
 
 private:
     friend class CommandLine;
     using Set = std::function<void(std::string const& text, std::string const& option)>;
+    enum class Values { One, OneEach, Many };
     struct Syntax {
         std::string name, about;
         char const* type;
         std::optional<std::string> fallback = {};
-        bool required = false, many = false;
+        bool required = false;
+        Values values = Values::One;
     };
     struct Option;
 
@@ -88,6 +99,12 @@ private:
     {
         return [&value, p = std::move(parse)](std::string const& text, std::string const& option) {
             value = p(text, option);
+        };
+    }
+    template <class T, class Parse> static Set append(std::vector<T>& values, Parse parse)
+    {
+        return [&values, p = std::move(parse)](std::string const& text, std::string const& option) {
+            values.push_back(p(text, option));
         };
     }
     void add(Syntax syntax, Set set);
@@ -114,6 +131,8 @@ public:
     int run(int argc, char const* const* argv);
 
 private:
+    int parse_and_work(int argc, char const* const* argv);
+
     std::string name_, version_;
     std::unique_ptr<CLI::App> app_;
     std::vector<std::unique_ptr<Verb>> verbs_;

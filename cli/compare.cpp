@@ -21,6 +21,7 @@ struct CompareRequest {
 
 int run(CompareRequest const& o)
 {
+    RunOutput out(o.run.json);
     Job job = prepare(o.model, o.shading, "compare");
     job.header.config.emplace_back("level", std::int64_t(o.level));
     ThreadPool const threads(o.run.threads);
@@ -34,9 +35,7 @@ int run(CompareRequest const& o)
         error_row("normal", "closest point, scheme to limit", "radians", c.normal_to_limit),
         error_row("normal", "closest point, limit to scheme", "radians", c.normal_from_limit),
         error_row("normal", "equal parameter", "radians", c.equal_normal)};
-    write_result(
-        o.run.json, [&] { return compare_report(job.header, c.diagonal, rows); },
-        compare_table(rows));
+    out.finish([&] { return compare_report(job.header, c.diagonal, rows); }, compare_table(rows));
     return 0;
 }
 

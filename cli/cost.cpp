@@ -28,7 +28,9 @@ struct CostRequest {
 
 int run(CostRequest o)
 {
-    if (!o.output.empty()) check_image_path(o.output);
+    RunOutput out(o.run.json);
+    OutputFile* const picture = o.output.empty() ? nullptr : &out.add(o.output);
+    if (picture) picture_format(*picture); // or refuses
     GpuModel const gpu = load_gpu_model(o.gpu);
     o.surface.vertex_cache = gpu.vertex_cache;
     Job job = prepare(o.surface, "cost");
@@ -50,7 +52,7 @@ int run(CostRequest o)
     add_run(job.header, job, threads, clock.seconds());
     DrawCost const cost = estimate_cost(gpu, statistics);
     CostSummary summary{gpu.name, cost.bound, gpu.overhead, cost.shaders, cost.seconds, {}, {}};
-    Roofline roofline{fmt::format("{} on {}", job.header.inputs[0].first, gpu.name),
+    Roofline roofline{fmt::format("{} on {}", as_utf8(job.header.inputs[0].first), gpu.name),
                       gpu.arithmetic,
                       16 * gpu.any_fetch,
                       {}};
@@ -63,9 +65,8 @@ int run(CostRequest o)
                 {s.stage, s.operations / (16 * s.fetches), s.operations / s.seconds()});
     }
     summary.sources.assign(gpu.sources.begin(), gpu.sources.end());
-    if (!o.output.empty()) write_roofline(roofline, o.output);
-    write_result(
-        o.run.json, [&] { return cost_report(job.header, summary); }, cost_table(summary));
+    if (picture) write_roofline(roofline, *picture);
+    out.finish([&] { return cost_report(job.header, summary); }, cost_table(summary));
     return 0;
 }
 
@@ -83,7 +84,7 @@ void add_cost(CommandLine& program)
     for (BuiltinGpu const& g : builtin_gpus())
         known += (known.empty() ? "" : " or ") + std::string(g.name);
     verb.option("--gpu", o->gpu, plain, "a file, or " + known, std::string(builtin_gpus()[0].name));
-    verb.option("-o", o->output, plain, "roofline picture, .png or .exr");
+    verb.option("-o", o->output, output_path, "roofline picture, .png or .exr");
     verb.flag("--geometry-only", o->geometry_only, "without rasterization");
     add_options(verb, o->picture);
     add_options(verb, o->surface);

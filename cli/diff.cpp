@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/job.h"
 #include "cli/verbs.h"
-#include "io/atomic_file.h"
+#include "io/input_file.h"
 #include "io/result_diff.h"
 #include "io/sha256.h"
 
@@ -31,6 +31,7 @@ double parse_tolerance(std::string const& text, std::string const& option)
 
 int run(DiffRequest const& o)
 {
+    RunOutput out(o.json);
     std::string const a = read_file(o.a), b = read_file(o.b);
     std::vector<ResultValue> const values = diff_results(a, b, {o.a, o.b}, o.tolerance);
     auto const input = [](std::string const& path, std::string const& text) {
@@ -38,8 +39,7 @@ int run(DiffRequest const& o)
     };
     ReportHeader const header{
         "diff", {{"tolerance", o.tolerance}}, {input(o.a, a), input(o.b, b)}, {}, {}};
-    write_result(
-        o.json, [&] { return diff_report(header, values); }, diff_table(values, o.all));
+    out.finish([&] { return diff_report(header, values); }, diff_table(values, o.all));
     return std::any_of(values.begin(), values.end(), [](auto const& v) { return v.differs; });
 }
 

@@ -78,6 +78,22 @@ std::string numbered(std::string const& path, std::size_t i)
     return p.string();
 }
 
+// One, or a picture for each frame. A stream takes one.
+std::vector<OutputFile*> pictures_of(DrawRequest const& o, RunOutput& out)
+{
+    std::vector<OutputFile*> files;
+    std::size_t const frames = std::size_t(o.surface.animate.frames);
+    if (o.output.empty()) return files;
+    if (frames > 1 && OutputFile(o.output).is_stream())
+        throw Error(
+            fmt::format("-o is {}, which takes one picture; --frames makes {}", o.output, frames));
+    for (std::size_t i = 0; i < frames; ++i) {
+        files.push_back(&out.add(frames > 1 ? numbered(o.output, i) : o.output));
+        picture_format(*files.back()); // or refuses
+    }
+    return files;
+}
+
 std::vector<double> as_doubles(glm::vec3 v)
 {
     return {v.x, v.y, v.z};
@@ -92,7 +108,7 @@ void draw_cage(ControlMesh mesh, FrameSettings const& f, ThreadPool const& threa
     draw_colored_mesh(control_mesh_picture(Topology(mesh)), f, 0.45f, threads, frame);
 }
 
-int run_error_view(DrawRequest const& o, Job& job)
+int run_error_view(DrawRequest const& o, Job& job, OutputFile* picture, RunOutput& out)
 {
     FrameSettings& f = job.frame;
     if (f.displacement || f.pose || f.direct3d10)
@@ -118,30 +134,31 @@ int run_error_view(DrawRequest const& o, Job& job)
         error_row("position", "equal parameter", "diagonal", e.position_statistics()),
         error_row("normal", "equal parameter", "radians", e.normal_statistics())};
     std::string const scheme = o.surface.model.scheme->info().name;
-    if (!o.output.empty())
+    if (picture)
         write_figure(
             {2,
              {{&view.position, scheme + ": position"}, {&view.normal, scheme + ": normal"}},
              {{"distance / diagonal", position}, {"angle, radians", normal}}},
-            o.output);
-    write_result(
-        o.run.json, [&] { return compare_report(job.header, e.diagonal, rows); },
-        compare_table(rows));
+            *picture);
+    out.finish([&] { return compare_report(job.header, e.diagonal, rows); }, compare_table(rows));
     return 0;
 }
 
 int run(DrawRequest const& o)
 {
-    if (!o.output.empty()) check_image_path(o.output);
+    RunOutput out(o.run.json);
+    std::vector<OutputFile*> const pictures = pictures_of(o, out);
+    OutputFile* const picture = pictures.empty() ? nullptr : pictures[0];
     bool const cage = o.view.shows == ViewRequest::Shows::Cage;
     Job job = prepare(o.surface, "draw", cage ? refine_for_scheme : build_scheme);
     set_picture(job, o.picture, o.surface);
-    if (o.view.shows == ViewRequest::Shows::Error) return run_error_view(o, job);
+    if (o.view.shows == ViewRequest::Shows::Error) return run_error_view(o, job, picture, out);
     FrameSettings& f = job.frame;
     f.view = o.view.view;
     f.cull = o.cull;
     f.samples = o.samples;
-    if (o.output.ends_with(".exr")) f.color_format = Format::R32G32B32A32_FLOAT;
+    if (picture && picture_format(*picture) == PictureFormat::Exr)
+        f.color_format = Format::R32G32B32A32_FLOAT;
 
     Config& c = job.header.config;
     c.emplace_back("width", std::int64_t(f.width));
@@ -174,21 +191,27 @@ int run(DrawRequest const& o)
         sequence.push_back({job.poses[i].phase, f.pose->bytes(),
                             ListStatistics{frame.statistics, frame.commands},
                             sha256_of_targets(frame.color, frame.depth)});
-        if (!o.output.empty()) write_image(frame.color, numbered(o.output, i));
+        if (!pictures.empty()) {
+            write_image(frame.color, *pictures[i]);
+            pictures[i]->close();
+        }
     }
     bar.clear();
     add_run(job.header, job, threads, clock.seconds());
     if (!sequence.empty()) {
-        write_result(
-            o.run.json, [&] { return sequence_report(job.header, sequence); },
-            sequence_table(sequence));
+        out.finish([&] { return sequence_report(job.header, sequence); }, sequence_table(sequence));
         return 0;
     }
-    if (!o.output.empty()) write_image(frame.color, o.output);
-    write_result(
-        o.run.json, [&] { return draw_report(job.header, frame); },
-        counters_table(frame.statistics));
+    if (picture) write_image(frame.color, *picture);
+    out.finish([&] { return draw_report(job.header, frame); }, counters_table(frame.statistics));
     return 0;
+}
+
+void warn_of_unused(Verb const& verb, std::string const& view,
+                    std::initializer_list<char const*> options)
+{
+    for (char const* option : options)
+        if (verb.given(option)) print_warnings({view + " does not use " + option});
 }
 
 } // namespace
@@ -204,7 +227,7 @@ void add_draw(CommandLine& program)
         "  tessemu draw jug --tess 32 --displace studs -o studs.png\n"
         "  tessemu draw jug --animate sway --frames 12 -o sway.png --json sway.json\n"
         "  tessemu draw cage.obj --view error -o error.png");
-    verb.option("-o", o->output, plain, "picture, .png or .exr");
+    verb.option("-o", o->output, output_path, "picture, .png or .exr; '-': PNG on standard output");
     add_options(verb, o->picture);
     verb.option(
         "--view", o->view, view_parser(),
@@ -228,7 +251,19 @@ void add_draw(CommandLine& program)
     add_options(verb, o->surface);
     add_vertex_cache(verb, o->surface);
     add_options(verb, o->run);
-    verb.runs([o] { return run(*o); });
+    verb.runs([o, &verb] {
+        using Shows = ViewRequest::Shows;
+        if (o->view.shows != Shows::Error) verb.needs({"--error-max", "--level"}, "--view error");
+        // No error: one list of options may serve several views.
+        if (o->view.shows == Shows::Error)
+            warn_of_unused(verb, "--view error",
+                           {"--tess", "--tess-edge", "--partitioning", "--samples", "--cull",
+                            "--vertex-cache"});
+        if (o->view.shows == Shows::Cage)
+            warn_of_unused(verb, "--view cage",
+                           {"--tess", "--tess-edge", "--partitioning", "--normals", "--direct3d"});
+        return run(*o);
+    });
 }
 
 } // namespace tessemu

@@ -20,9 +20,12 @@ struct ExportRequest {
 
 int run(ExportRequest const& o)
 {
+    RunOutput out(o.run.json);
+    OutputFile& file = out.add(o.output);
+    mesh_format(file); // or refuses
     Job job = prepare(o.surface, "export");
     job.header.config.emplace_back("weld", o.weld);
-    MeshWriter writer(o.output, o.weld);
+    MeshWriter writer(file, o.weld);
     ThreadPool const threads(o.run.threads);
     ProgressBar bar;
     Stopwatch const clock;
@@ -36,10 +39,9 @@ int run(ExportRequest const& o)
     bar.clear();
     writer.finish();
     add_run(job.header, job, threads, clock.seconds());
-    write_result(
-        o.run.json, [&] { return export_report(job.header, statistics, writer); },
-        fmt::format("{}: {} vertices, {} triangles\n", o.output, writer.vertices(),
-                    writer.triangles()));
+    out.finish([&] { return export_report(job.header, statistics, writer); },
+               fmt::format("{}: {} vertices, {} triangles\n", o.output, writer.vertices(),
+                           writer.triangles()));
     return 0;
 }
 
@@ -51,7 +53,7 @@ void add_export(CommandLine& program)
     Verb& verb = program.add_verb("export", "write the tessellated mesh, patch by patch",
                                   "  tessemu export jug --tess 8 -o jug.ply\n"
                                   "  tessemu export cage.obj --tess 4 --weld -o cage4.obj");
-    verb.required("-o", o->output, plain, "mesh, .obj or .ply");
+    verb.required("-o", o->output, output_path, "mesh, .obj or .ply; '-': OBJ on standard output");
     verb.flag("--weld", o->weld, "join vertices with equal bits");
     add_options(verb, o->surface);
     add_vertex_cache(verb, o->surface);

@@ -18,6 +18,7 @@ struct InfoRequest {
 
 int run(InfoRequest const& o)
 {
+    RunOutput out(o.json);
     Model model = load_model(o.model.model);
     print_warnings(model.warnings);
     SchemeInfo const info = o.model.scheme->info();
@@ -53,9 +54,7 @@ int run(InfoRequest const& o)
     }
     print_warnings(more);
     header.warnings.insert(header.warnings.end(), more.begin(), more.end());
-    write_result(
-        o.json, [&] { return info_report(header, summary, patches); },
-        info_table(summary, patches));
+    out.finish([&] { return info_report(header, summary, patches); }, info_table(summary, patches));
     return 0;
 }
 

@@ -2,8 +2,8 @@
 #include "cli/job.h"
 
 #include "analysis/compare.h"
-#include "io/atomic_file.h"
 #include "io/image_reader.h"
+#include "io/input_file.h"
 #include "io/sha256.h"
 
 #include <fmt/format.h>
@@ -12,7 +12,6 @@
 #include <glm/geometric.hpp>
 
 #include <cmath>
-#include <cstdio>
 
 #include <unistd.h>
 
@@ -20,7 +19,7 @@ namespace tessemu {
 
 void ProgressBar::clear()
 {
-    if (shown_) std::fputs("\r\033[K", stderr);
+    if (shown_) print_message("\r\033[K");
     shown_ = false;
 }
 
@@ -28,28 +27,15 @@ void ProgressBar::operator()(std::size_t done, std::size_t all)
 {
     if (!isatty(STDERR_FILENO) || clock_.seconds() < 1 || all == 0) return;
     int const width = 40, filled = int(std::uint64_t(width) * done / all);
-    fmt::print(stderr, "\r[{}{}] {:3d} %", std::string(std::size_t(filled), '#'),
-               std::string(std::size_t(width - filled), '.'), int(100 * std::uint64_t(done) / all));
-    std::fflush(stderr);
+    print_message(fmt::format("\r[{}{}] {:3d} %", std::string(std::size_t(filled), '#'),
+                              std::string(std::size_t(width - filled), '.'),
+                              int(100 * std::uint64_t(done) / all)));
     shown_ = true;
 }
 
 void print_warnings(std::vector<std::string> const& warnings)
 {
-    for (std::string const& w : warnings) fmt::print(stderr, "warning: {}\n", w);
-}
-
-void write_text(std::string const& path, std::string const& text)
-{
-    if (path == "-")
-        fmt::print("{}", text);
-    else
-        write_file(path, text);
-}
-
-void print_table(std::string const& json_path, std::string const& table)
-{
-    if (json_path != "-") fmt::print("{}", table);
+    for (std::string const& w : warnings) print_message("warning: " + w + "\n");
 }
 
 SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make)

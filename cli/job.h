@@ -5,6 +5,7 @@
 #pragma once
 
 #include "cli/options.h"
+#include "cli/run_output.h"
 #include "io/model.h"
 #include "io/report.h"
 
@@ -38,18 +39,6 @@ private:
 };
 
 void print_warnings(std::vector<std::string> const& warnings);
-/// Writes text to a file, or prints it for "-".
-void write_text(std::string const& path, std::string const& text);
-/// Prints a table, unless JSON is printed.
-void print_table(std::string const& json_path, std::string const& table);
-/// A result as JSON to its path, if there is one, and as a table to the reader.
-/// \param json  makes it; hashes take their time
-template <class Json>
-void write_result(std::string const& path, Json&& json, std::string const& table)
-{
-    if (!path.empty()) write_text(path, json());
-    print_table(path, table);
-}
 
 struct FramePose {
     double phase = 0;

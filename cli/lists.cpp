@@ -2,6 +2,7 @@
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/options.h"
+#include "cli/run_output.h"
 #include "cli/verbs.h"
 #include "pipeline/mesh/builtin_models.h"
 
@@ -24,25 +25,29 @@ std::string allowed(SchemeParameter const& p)
 
 int list_schemes()
 {
+    std::string out;
     for (auto const& scheme : schemes()) {
         SchemeInfo const i = scheme->info();
-        fmt::print("{}\n    {} section {}: {}\n    takes {}\n", i.name, i.paper, i.section,
-                   i.summary, in_words(i.takes));
+        out += fmt::format("{}\n    {} section {}: {}\n    takes {}\n", i.name, i.paper, i.section,
+                           i.summary, in_words(i.takes));
         for (SchemeParameter const& p : i.parameters)
-            fmt::print("    --set {}={}  {}: {}\n", p.name,
-                       p.words.empty() ? fmt::format("{}", p.default_value) : p.words[0],
-                       allowed(p), p.meaning);
+            out += fmt::format("    --set {}={}  {}: {}\n", p.name,
+                               p.words.empty() ? fmt::format("{}", p.default_value) : p.words[0],
+                               allowed(p), p.meaning);
     }
+    print(out);
     return 0;
 }
 
 int list_models()
 {
+    std::string out;
     for (BuiltinModel const& m : builtin_models()) {
         std::string_view about = m.obj.substr(0, m.obj.find('\n'));
         about.remove_prefix(std::min<std::size_t>(2, about.size()));
-        fmt::print("{:<14} {}\n", m.name, about);
+        out += fmt::format("{:<14} {}\n", m.name, about);
     }
+    print(out);
     return 0;
 }
 

@@ -55,6 +55,12 @@ std::vector<std::string> split(std::string const& text, char separator)
     return parts;
 }
 
+std::string output_path(std::string const& text, std::string const& option)
+{
+    if (text.empty()) refuse(text, option, "a file's name, or - for standard output");
+    return text;
+}
+
 namespace {
 
 Scheme const* parse_scheme(std::string const& text, std::string const&)
@@ -202,7 +208,8 @@ void add_options(Verb& verb, ModelRequest& o)
     verb.required("MODEL", o.model, plain, "OBJ file or built-in cage, see 'tessemu models'");
     verb.option("--scheme", o.scheme, parse_scheme, "patch scheme, see 'tessemu schemes'",
                 "gregory-stencil");
-    verb.list("--set", o.build.set, parse_parameter, "NAME=VALUE: a parameter of the scheme");
+    verb.repeated("--set", o.build.set, parse_parameter,
+                  "NAME=VALUE: a parameter of the scheme; again for another one");
     verb.option(
         "--subdivide", o.build.subdivide, whole(0, 6),
         "steps of Catmull-Clark subdivision of the mesh before the scheme, beyond those that it "
@@ -278,7 +285,7 @@ void add_vertex_cache(Verb& verb, SurfaceRequest& o)
 
 void add_json(Verb& verb, std::string& path)
 {
-    verb.option("--json", path, plain, "write the result as JSON; '-' is standard output");
+    verb.option("--json", path, output_path, "write the result as JSON; '-' is standard output");
 }
 
 void add_level(Verb& verb, int& level, std::string const& about)

@@ -120,6 +120,9 @@ std::int64_t whole_number(std::string const& text, std::string const& option, st
                           std::int64_t high);
 std::vector<std::string> split(std::string const& text, char separator);
 
+/// Where a result goes: not empty.
+std::string output_path(std::string const& text, std::string const& option);
+
 /// Parser of a whole number.
 template <class Int> auto whole(Int low, Int high)
 {

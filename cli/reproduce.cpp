@@ -50,35 +50,38 @@ PaperInput load_input(ReproduceRequest const& o, ReportHeader& header)
     return in;
 }
 
-void show(PaperFigure const& figure, std::string const& output)
+void show(PaperFigure const& figure, OutputFile& picture, RunOutput& out)
 {
-    Figure out{figure.columns, {}, {}};
-    for (PaperFigure::Panel const& p : figure.panels) out.panels.push_back({&p.picture, p.caption});
+    Figure drawn{figure.columns, {}, {}};
+    for (PaperFigure::Panel const& p : figure.panels)
+        drawn.panels.push_back({&p.picture, p.caption});
     for (PaperFigure::Scale const& scale : figure.scales)
-        out.scales.push_back({scale.label, scale.max});
-    write_figure(out, output);
-    fmt::print("{}\n", output);
-    for (std::string const& remark : figure.remarks) fmt::print("{}\n", remark);
+        drawn.scales.push_back({scale.label, scale.max});
+    write_figure(drawn, picture);
+    std::string said = picture.path().string() + "\n";
+    for (std::string const& remark : figure.remarks) said += remark + "\n";
+    out.finish([] { return ""; }, said);
 }
 
-void show(PaperTable const& table, ReportHeader const& header, std::string const& json)
+void show(PaperTable const& table, ReportHeader const& header, RunOutput& out)
 {
     std::vector<PaperRow> rows;
     for (PaperCell const& c : table.cells) rows.push_back({c.row, c.column, c.paper, c.ours});
-    write_result(
-        json, [&] { return paper_report(header, table.title, rows, table.remarks); },
-        paper_table(table.title, rows, table.remarks));
+    out.finish([&] { return paper_report(header, table.title, rows, table.remarks); },
+               paper_table(table.title, rows, table.remarks));
 }
 
 int run(ReproduceRequest const& o)
 {
     PaperItem const& item = *o.item;
     std::string const output = o.output.empty() ? item.name + ".png" : o.output;
-    if (item.figure) check_image_path(output);
     if (item.figure && !o.run.json.empty())
         throw Error("--json is of tables; a figure is a picture");
     if (!item.figure && !o.output.empty()) throw Error("-o is of figures; --json writes a table");
     if (o.level && item.level == 0) throw Error("--level: " + item.name + " has no level");
+    RunOutput out(o.run.json);
+    OutputFile* const picture = item.figure ? &out.add(output) : nullptr;
+    if (picture) picture_format(*picture); // or refuses
     ReportHeader header{"reproduce", {{"name", item.name}}, {}, {}, {}};
     PaperInput const in = load_input(o, header);
     if (item.level != 0) header.config.emplace_back("level", std::int64_t(in.level));
@@ -90,9 +93,9 @@ int run(ReproduceRequest const& o)
     bar.clear();
     header.run = {{"threads", std::int64_t(threads.threads())}, {"seconds", clock.seconds()}};
     if (item.figure)
-        show(std::get<PaperFigure>(result), output);
+        show(std::get<PaperFigure>(result), *picture, out);
     else
-        show(std::get<PaperTable>(result), header, o.run.json);
+        show(std::get<PaperTable>(result), header, out);
     return 0;
 }
 
@@ -155,7 +158,7 @@ void add_reproduce(CommandLine& program)
                 }) + "; shown where they are there by " +
                     listed([](auto& i) { return has_model(i, false) ? i.name : ""; }),
                 ".");
-    verb.option("-o", o->output, plain, "of a figure: picture, .png or .exr [NAME.png]");
+    verb.option("-o", o->output, output_path, "of a figure: picture, .png or .exr [NAME.png]");
     verb.option("--level", o->level, whole(1, 6),
                 "both surfaces at 2^level segments an edge, 1 to 6: of " + listed([](auto& i) {
                     return i.level ? fmt::format("{} [{}]", i.name, i.level) : "";

@@ -3,7 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/job.h"
 #include "cli/verbs.h"
-#include "io/atomic_file.h"
+#include "io/input_file.h"
 #include "io/tessellator_text.h"
 
 #include <fmt/format.h>
@@ -23,6 +23,7 @@ struct TessellateRequest {
 
 int run_batch(TessellateRequest const& o)
 {
+    RunOutput result(o.output.empty() ? "-" : o.output);
     std::string const text = o.batch == "-" ? read_file("/dev/stdin") : read_file(o.batch);
     std::string out;
     int line = 0;
@@ -31,13 +32,14 @@ int run_batch(TessellateRequest const& o)
         TessellatorCase const c = parse_tessellator_case(row, o.batch, ++line);
         out += tessellator_answer(run_tessellator_case(c)) + "\n";
     }
-    write_text(o.output.empty() ? "-" : o.output, out);
+    result.finish([&] { return out; }, "");
     return 0;
 }
 
 int run(TessellateRequest const& o)
 {
     if (!o.batch.empty()) return run_batch(o);
+    RunOutput result(o.output.empty() ? "-" : o.output);
     TessellatorCase c{o.state, {}};
     auto const wanted = std::size_t(tess_factor_count(c.state.domain));
     if (o.factors.size() != wanted)
@@ -52,8 +54,7 @@ int run(TessellateRequest const& o)
                               {},
                               {},
                               {}};
-    write_text(o.output.empty() ? "-" : o.output,
-               tessellate_report(header, c, run_tessellator_case(c)));
+    result.finish([&] { return tessellate_report(header, c, run_tessellator_case(c)); }, "");
     return 0;
 }
 
@@ -88,8 +89,10 @@ void add_tessellate(CommandLine& program)
               "quad: edges u=0 v=0 u=1 v=1, inside u v; tri: u=0 v=0 w=0, inside; isoline: "
               "density, detail");
     verb.option("--batch", o->batch, plain, "file of cases, one a line; '-' is standard input");
-    verb.exclude("--factors", "--batch");
-    verb.option("-o,--json", o->output, plain, "file for the result instead of standard output");
+    for (char const* name : {"--factors", "--domain", "--partitioning", "--output"})
+        verb.exclude(name, "--batch"); // whose lines say it
+    verb.option("-o,--json", o->output, output_path,
+                "file for the result instead of standard output");
     verb.runs([o] { return run(*o); });
 }
 

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/figure.h"
 
-#include "io/atomic_file.h"
-#include "io/image_writer.h"
+#include "io/encoded_picture.h"
 #include "shaders_cpp/pixel/colored_view.h"
-
-#include <fmt/format.h> // before OpenImageIO, which brings its own, header-only
 
 #include <OpenImageIO/imagebufalgo.h>
 
@@ -36,20 +33,16 @@ void place(ImageBuf& image, int left, int top, ColorTarget const& picture)
             image.setpixel(left + x, top + y, picture.load(x, y).data());
 }
 
-void write(ImageBuf const& image, std::filesystem::path const& path)
+void write(ImageBuf const& image, OutputFile& out)
 {
-    write_atomically(path, [&](std::filesystem::path const& temporary) {
-        bool const png = path.extension() == ".png";
-        if (!image.write(temporary.string(), png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT))
-            throw WriteError(path.string() + ": " + image.geterror());
-    });
+    write_encoded(out, image.spec().width, image.spec().height,
+                  [&](OIIO::ImageOutput& file) { return image.write(&file); });
 }
 
 } // namespace
 
-void write_figure(Figure const& f, std::filesystem::path const& path)
+void write_figure(Figure const& f, OutputFile& out)
 {
-    check_image_path(path);
     if (f.panels.empty() || f.columns < 1) throw WriteError("a figure has no picture");
     int const rows = (int(f.panels.size()) + f.columns - 1) / f.columns;
     int const w = f.panels[0].picture->width(), h = f.panels[0].picture->height();
@@ -80,12 +73,11 @@ void write_figure(Figure const& f, std::filesystem::path const& path)
         text(image, x0 + w / 2, y, scale.label, Algo::TextAlignX::Center);
         text(image, x0 + w, y, fmt::format("{:.3g}", scale.max), Algo::TextAlignX::Right);
     }
-    write(image, path);
+    write(image, out);
 }
 
-void write_roofline(Roofline const& r, std::filesystem::path const& path)
+void write_roofline(Roofline const& r, OutputFile& out)
 {
-    check_image_path(path);
     constexpr int kWidth = 900, kHeight = 620, kLeft = 90, kRight = 40, kTop = 60, kBottom = 60;
     ImageBuf image(OIIO::ImageSpec(kWidth, kHeight, 4, OIIO::TypeDesc::FLOAT));
     Algo::fill(image, kPaper);
@@ -99,7 +91,7 @@ void write_roofline(Roofline const& r, std::filesystem::path const& path)
         include(p.operations_per_byte, p.operations_per_second);
     if (std::isfinite(r.operations_per_second) && std::isfinite(r.bytes_per_second))
         include(r.operations_per_second / r.bytes_per_second, r.operations_per_second);
-    if (high_x == 0) throw WriteError(path.string() + ": no stage has operations to show");
+    if (high_x == 0) throw WriteError(out.path().string() + ": no stage has operations to show");
     int const x0 = int(std::floor(std::log10(low_x))), x1 = int(std::floor(std::log10(high_x))) + 1;
     int const y0 = int(std::floor(std::log10(low_y))), y1 = int(std::floor(std::log10(high_y))) + 1;
     auto const px = [&](double x) {
@@ -147,7 +139,7 @@ void write_roofline(Roofline const& r, std::filesystem::path const& path)
     text(image, kWidth / 2, 24, r.title, Algo::TextAlignX::Center);
     text(image, kWidth / 2, kHeight - 16, "operations a fetched byte", Algo::TextAlignX::Center);
     text(image, 10, kTop - 18, "operations a second", Algo::TextAlignX::Left);
-    write(image, path);
+    write(image, out);
 }
 
 } // namespace tessemu

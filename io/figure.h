@@ -4,8 +4,7 @@
 #pragma once
 
 #include "emu/graphics_state.h"
-
-#include <filesystem>
+#include "io/output_file.h"
 
 namespace tessemu {
 
@@ -25,9 +24,9 @@ struct Figure {
     std::vector<ColorScale> scales; ///< one a column, or none
 };
 
-/// Writes a figure as .png or .exr. Atomic. Throws WriteError, among other things on a computer
-/// without the font DejaVu Sans.
-void write_figure(Figure const& figure, std::filesystem::path const& path);
+/// Writes a figure as .png or .exr; the caller commits. Throws WriteError, among other things on a
+/// computer without the font DejaVu Sans.
+void write_figure(Figure const& figure, OutputFile& out);
 
 /// Arithmetic against fetches: what stages do, under what the GPU can.
 struct Roofline {
@@ -41,6 +40,6 @@ struct Roofline {
     std::vector<Point> points;
 };
 /// Both axes logarithmic. As write_figure.
-void write_roofline(Roofline const& roofline, std::filesystem::path const& path);
+void write_roofline(Roofline const& roofline, OutputFile& out);
 
 } // namespace tessemu

@@ -2,7 +2,7 @@
 #include "io/gpu_file.h"
 
 #include "emu/error.h"
-#include "io/atomic_file.h"
+#include "io/input_file.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,33 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/image_writer.h"
 
-#include "io/atomic_file.h"
-
-#include <fmt/format.h> // before OpenImageIO, which brings its own, header-only
-
-#include <OpenImageIO/imageio.h>
+#include "io/encoded_picture.h"
 
 namespace tessemu {
 
-void check_image_path(std::filesystem::path const& path)
+PictureFormat picture_format(OutputFile const& out)
 {
-    auto const extension = path.extension();
-    if (extension != ".png" && extension != ".exr")
-        throw WriteError(path.string() + ": extension is '" + extension.string() +
-                         "', images are .png or .exr");
+    std::string const extension = extension_of(out.path());
+    if (extension == "png" || (extension.empty() && out.is_stream())) return PictureFormat::Png;
+    if (extension == "exr") return PictureFormat::Exr;
+    throw WriteError(out.path().string() + ": extension is '" + out.path().extension().string() +
+                     "', images are .png or .exr");
 }
 
-void write_image(ColorTarget const& target, std::filesystem::path const& path)
+void write_image(ColorTarget const& target, OutputFile& out)
 {
-    check_image_path(path);
-    bool const png = path.extension() == ".png";
+    bool const png = picture_format(out) == PictureFormat::Png;
     auto const width = std::size_t(target.width());
-    write_atomically(path, [&](std::filesystem::path const& temporary) {
-        auto const file = OIIO::ImageOutput::create(temporary.string());
-        OIIO::ImageSpec spec(target.width(), target.height(), 4,
-                             png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
-        if (!file || !file->open(temporary.string(), spec))
-            throw WriteError(path.string() + ": " + (file ? file->geterror() : OIIO::geterror()));
+    write_encoded(out, target.width(), target.height(), [&](OIIO::ImageOutput& file) {
         bool good = true;
         std::vector<std::uint8_t> bytes(width * 4);
         std::vector<float> floats(width * 4);
@@ -39,11 +30,10 @@ void write_image(ColorTarget const& target, std::filesystem::path const& path)
                     bytes[4 * x + k] = std::uint8_t(unorm_from_float(c[k], 8));
                 }
             }
-            good = png ? file->write_scanline(y, 0, OIIO::TypeDesc::UINT8, bytes.data())
-                       : file->write_scanline(y, 0, OIIO::TypeDesc::FLOAT, floats.data());
+            good = png ? file.write_scanline(y, 0, OIIO::TypeDesc::UINT8, bytes.data())
+                       : file.write_scanline(y, 0, OIIO::TypeDesc::FLOAT, floats.data());
         }
-        good = file->close() && good;
-        if (!good) throw WriteError(path.string() + ": " + file->geterror());
+        return good;
     });
 }
 

@@ -4,16 +4,18 @@
 #pragma once
 
 #include "emu/graphics_state.h"
-
-#include <filesystem>
+#include "io/output_file.h"
 
 namespace tessemu {
 
-/// Writes a colour target of one sample: .png as 8-bit RGBA (float to UNORM by rule R21), .exr as
-/// 32-bit float RGBA. Atomic. Throws WriteError for another extension or when writing fails.
-void write_image(ColorTarget const& target, std::filesystem::path const& path);
+enum class PictureFormat { Png, Exr };
 
-/// Throws WriteError unless write_image knows the extension; for checking before long work.
-void check_image_path(std::filesystem::path const& path);
+/// By the extension, .png or .exr in any case; a stream without one gets PNG. Throws WriteError
+/// otherwise: for checking before long work.
+PictureFormat picture_format(OutputFile const& out);
+
+/// Writes a colour target of one sample: .png as 8-bit RGBA (float to UNORM by rule R21), .exr as
+/// 32-bit float RGBA. The caller commits.
+void write_image(ColorTarget const& target, OutputFile& out);
 
 } // namespace tessemu

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/mesh_writer.h"
 
-#include "io/atomic_file.h"
 #include "io/sha256.h"
 
 #include <fmt/format.h>
 
-#include <cstring>
-#include <fstream>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <system_error>
 #include <unordered_map>
 
 #include <unistd.h>
 
 namespace tessemu {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -41,93 +40,120 @@ struct BitsHash {
     }
 };
 
+// Records that wait in a file without a name, gone with the process.
+template <class Record> class WaitingRecords {
+public:
+    explicit WaitingRecords(OutputFile const& out) : for_(out.path().string())
+    {
+        std::string name = out.scratch_folder() / ".tessemu-XXXXXX";
+        int const fd = mkstemp(name.data());
+        if (fd < 0) fail();
+        unlink(name.c_str());
+        file_.reset(fdopen(fd, "w+b"));
+        if (!file_) fail();
+    }
+    void put(Record const& r)
+    {
+        if (std::fwrite(&r, sizeof r, 1, file_.get()) != 1) fail();
+        ++count_;
+    }
+    std::uint64_t count() const { return count_; }
+    template <class Visit> void visit(Visit const& visit) const
+    {
+        if (std::fflush(file_.get()) != 0 || std::fseek(file_.get(), 0, SEEK_SET) != 0) fail();
+        Record r;
+        for (std::uint64_t i = 0; i < count_; ++i) {
+            if (std::fread(&r, sizeof r, 1, file_.get()) != 1) fail();
+            visit(r);
+        }
+    }
+
+private:
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+
+    [[noreturn]] void fail() const
+    {
+        throw WriteError(for_ + ": its temporary: " + std::generic_category().message(errno));
+    }
+
+    std::string for_;
+    std::unique_ptr<std::FILE, Close> file_;
+    std::uint64_t count_ = 0;
+};
+
 } // namespace
 
-// Vertices and triangles wait in two binary files; the format is made of them at the end.
+MeshFormat mesh_format(OutputFile const& out)
+{
+    std::string const extension = extension_of(out.path());
+    if (extension == "obj" || (extension.empty() && out.is_stream())) return MeshFormat::Obj;
+    if (extension == "ply") return MeshFormat::Ply;
+    throw WriteError(out.path().string() + ": extension is '" + out.path().extension().string() +
+                     "', meshes are .obj or .ply");
+}
+
+// Vertices and triangles wait until their numbers are known, which the formats begin with.
 struct MeshWriter::Impl {
-    fs::path path, vertex_path, triangle_path;
-    bool ply, weld;
-    std::ofstream vertex_file, triangle_file;
-    std::uint64_t vertices = 0, triangles = 0;
+    OutputFile& out;
+    MeshFormat format;
+    bool weld;
+    WaitingRecords<Vertex> vertices;
+    WaitingRecords<Triangle> triangles;
     std::unordered_map<Bits, std::uint32_t, BitsHash> welded;
     std::vector<std::uint32_t> number; // of the patch's points
 
-    void put(Vertex const& v)
+    Impl(OutputFile& out_, bool weld_)
+        : out(out_),
+          format(mesh_format(out_)),
+          weld(weld_),
+          vertices(out_),
+          triangles(out_)
     {
-        vertex_file.write(reinterpret_cast<char const*>(&v), sizeof v);
-        ++vertices;
-    }
-    void put(Triangle const& t)
-    {
-        triangle_file.write(reinterpret_cast<char const*>(&t), sizeof t);
-        ++triangles;
     }
 
-    template <class Record, class Visit> static void read(fs::path const& file, Visit const& visit)
+    template <class T> void write_bytes(T const& value) const
     {
-        std::ifstream in(file, std::ios::binary);
-        Record r;
-        while (in.read(reinterpret_cast<char*>(&r), sizeof r)) visit(r);
+        out.write({reinterpret_cast<char const*>(&value), sizeof value});
     }
 
-    void write_ply(std::ostream& out) const
+    void write_ply() const
     {
-        out << fmt::format("ply\nformat binary_little_endian 1.0\ncomment tessemu\n"
-                           "element vertex {}\n"
-                           "property float x\nproperty float y\nproperty float z\n"
-                           "property float nx\nproperty float ny\nproperty float nz\n"
-                           "property float u\nproperty float v\nproperty int patch\n"
-                           "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-                           vertices, triangles);
-        read<Vertex>(vertex_path, [&](Vertex const& v) {
-            out.write(reinterpret_cast<char const*>(&v), sizeof v);
-        });
-        read<Triangle>(triangle_path, [&](Triangle const& t) {
-            out.put(3);
-            out.write(reinterpret_cast<char const*>(t.v), sizeof t.v);
+        out.write(
+            fmt::format("ply\nformat binary_little_endian 1.0\ncomment tessemu\n"
+                        "element vertex {}\n"
+                        "property float x\nproperty float y\nproperty float z\n"
+                        "property float nx\nproperty float ny\nproperty float nz\n"
+                        "property float u\nproperty float v\nproperty int patch\n"
+                        "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+                        vertices.count(), triangles.count()));
+        vertices.visit([&](Vertex const& v) { write_bytes(v); });
+        triangles.visit([&](Triangle const& t) {
+            write_bytes(std::uint8_t(3));
+            write_bytes(t.v);
         });
     }
 
-    void write_obj(std::ostream& out) const
+    void write_obj() const
     {
-        read<Vertex>(vertex_path, [&](Vertex const& v) {
-            out << fmt::format("v {} {} {}\nvn {} {} {}\nvt {} {}\n", v.position[0], v.position[1],
-                               v.position[2], v.normal[0], v.normal[1], v.normal[2], v.uv[0],
-                               v.uv[1]);
+        vertices.visit([&](Vertex const& v) {
+            out.write(fmt::format("v {} {} {}\nvn {} {} {}\nvt {} {}\n", v.position[0],
+                                  v.position[1], v.position[2], v.normal[0], v.normal[1],
+                                  v.normal[2], v.uv[0], v.uv[1]));
         });
         std::uint32_t patch = 0xffffffffu;
-        read<Triangle>(triangle_path, [&](Triangle const& t) {
-            if (t.patch != patch) out << fmt::format("g patch_{}\n", patch = t.patch);
-            out << fmt::format("f {0}/{0}/{0} {1}/{1}/{1} {2}/{2}/{2}\n", t.v[0] + 1, t.v[1] + 1,
-                               t.v[2] + 1);
+        triangles.visit([&](Triangle const& t) {
+            if (t.patch != patch) out.write(fmt::format("g patch_{}\n", patch = t.patch));
+            out.write(fmt::format("f {0}/{0}/{0} {1}/{1}/{1} {2}/{2}/{2}\n", t.v[0] + 1, t.v[1] + 1,
+                                  t.v[2] + 1));
         });
     }
 };
 
-MeshWriter::MeshWriter(fs::path path, bool weld) : impl_(std::make_unique<Impl>())
-{
-    Impl& m = *impl_;
-    if (path.extension() != ".obj" && path.extension() != ".ply")
-        throw WriteError(path.string() + ": extension is '" + path.extension().string() +
-                         "', meshes are .obj or .ply");
-    m.path = path;
-    m.ply = path.extension() == ".ply";
-    m.weld = weld;
-    std::string const base = path.string() + ".tmp" + std::to_string(getpid());
-    m.vertex_path = base + "v";
-    m.triangle_path = base + "f";
-    m.vertex_file.open(m.vertex_path, std::ios::binary);
-    m.triangle_file.open(m.triangle_path, std::ios::binary);
-    if (!m.vertex_file || !m.triangle_file)
-        throw WriteError(path.string() + ": " + std::strerror(errno));
-}
+MeshWriter::MeshWriter(OutputFile& out, bool weld) : impl_(std::make_unique<Impl>(out, weld)) {}
 
-MeshWriter::~MeshWriter()
-{
-    std::error_code ignored;
-    fs::remove(impl_->vertex_path, ignored);
-    fs::remove(impl_->triangle_path, ignored);
-}
+MeshWriter::~MeshWriter() = default;
 
 void MeshWriter::add(SurfacePatch const& patch)
 {
@@ -135,8 +161,8 @@ void MeshWriter::add(SurfacePatch const& patch)
     DomainPoints const& points = patch.domain();
     PatchPlace const& place = patch.place();
     std::size_t const n = patch.points();
-    if (m.vertices + n > 0xffffffffu)
-        throw WriteError(m.path.string() + ": the mesh has more than 4294967295 vertices");
+    if (m.vertices.count() + n > 0xffffffffu)
+        throw WriteError(m.out.path().string() + ": the mesh has more than 4294967295 vertices");
     m.number.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         SurfaceVertex const v = patch.vertex(i);
@@ -148,57 +174,47 @@ void MeshWriter::add(SurfacePatch const& patch)
             Bits bits;
             std::memcpy(bits.words.data(), out.position, sizeof out.position);
             std::memcpy(bits.words.data() + 3, out.normal, sizeof out.normal);
-            auto const [it, fresh] = m.welded.try_emplace(bits, std::uint32_t(m.vertices));
+            auto const [it, fresh] = m.welded.try_emplace(bits, std::uint32_t(m.vertices.count()));
             m.number[i] = it->second;
             if (!fresh) continue;
         } else {
-            m.number[i] = std::uint32_t(m.vertices);
+            m.number[i] = std::uint32_t(m.vertices.count());
         }
         UnitPoint const at = domain_to_unit(place, points.u[i], points.v[i]);
         out.uv[0] = at.u;
         out.uv[1] = at.v;
-        m.put(out);
+        m.vertices.put(out);
     }
     auto const& index = patch.triangles();
     for (std::size_t i = 0; i + 2 < index.size(); i += 3) {
         Triangle const t{{m.number[index[i]], m.number[index[i + 1]], m.number[index[i + 2]]},
                          place.face};
         bool const collapsed = t.v[0] == t.v[1] || t.v[1] == t.v[2] || t.v[2] == t.v[0];
-        if (!m.weld || !collapsed) m.put(t);
+        if (!m.weld || !collapsed) m.triangles.put(t);
     }
 }
 
 void MeshWriter::finish()
 {
-    Impl& m = *impl_;
-    m.vertex_file.close();
-    m.triangle_file.close();
-    write_atomically(m.path, [&](fs::path const& temporary) {
-        std::ofstream out(temporary, std::ios::binary);
-        if (m.ply)
-            m.write_ply(out);
-        else
-            m.write_obj(out);
-        out.close();
-        if (!out || !m.vertex_file || !m.triangle_file)
-            throw WriteError(m.path.string() + ": writing failed (is the disk full?)");
-    });
+    if (impl_->format == MeshFormat::Ply)
+        impl_->write_ply();
+    else
+        impl_->write_obj();
 }
 
 std::uint64_t MeshWriter::vertices() const
 {
-    return impl_->vertices;
+    return impl_->vertices.count();
 }
 std::uint64_t MeshWriter::triangles() const
 {
-    return impl_->triangles;
+    return impl_->triangles.count();
 }
 
 void MeshWriter::add_to_hash(Sha256& hash) const
 {
-    Impl::read<Vertex>(impl_->vertex_path, [&](Vertex const& v) { hash.add(&v, sizeof v); });
-    Impl::read<Triangle>(impl_->triangle_path,
-                         [&](Triangle const& t) { hash.add(t.v, sizeof t.v); });
+    impl_->vertices.visit([&](Vertex const& v) { hash.add(&v, sizeof v); });
+    impl_->triangles.visit([&](Triangle const& t) { hash.add(t.v, sizeof t.v); });
 }
 
 } // namespace tessemu

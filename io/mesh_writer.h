@@ -3,17 +3,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "io/output_file.h"
 #include "pipeline/frame.h"
-
-#include <filesystem>
-#include <iosfwd>
 
 namespace tessemu {
 
 class Sha256;
 
-/// Streams a mesh to disk: vertices and triangles go to two temporary files that become one at the
-/// end, so memory holds one patch (with welding: one entry per vertex).
+enum class MeshFormat { Obj, Ply };
+
+/// By the extension, .obj or .ply in any case; a stream without one gets OBJ. Throws WriteError
+/// otherwise.
+MeshFormat mesh_format(OutputFile const& out);
+
+/// Streams a mesh to disk: vertices and triangles go to two files without a name that become one at
+/// the end, so memory holds one patch (with welding: one entry per vertex).
 ///
 /// A vertex is position, normal, patch (the face's number in the file's mesh, from 0), and u, v in
 /// its unit (patch_place.h).
@@ -23,12 +27,13 @@ class MeshWriter {
 public:
     /// \param weld  join vertices whose position and normal have equal bits; triangles that lose a
     ///              corner that way are left out; patch and (u,v) are those of the first
-    /// Throws WriteError for another extension or a path that cannot be written.
-    MeshWriter(std::filesystem::path path, bool weld);
+    /// \param out   is written by finish(); the caller commits
+    /// Throws WriteError for another extension, and as any part of the mesh cannot be stored.
+    MeshWriter(OutputFile& out, bool weld);
     ~MeshWriter();
 
     void add(SurfacePatch const& patch);
-    /// Completes the file. Without it nothing is left behind.
+    /// Writes the file.
     void finish();
 
     std::uint64_t vertices() const;

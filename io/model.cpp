@@ -2,7 +2,7 @@
 #include "io/model.h"
 
 #include "emu/error.h"
-#include "io/atomic_file.h"
+#include "io/input_file.h"
 #include "io/sha256.h"
 #include "pipeline/mesh/builtin_models.h"
 

@@ -2,7 +2,7 @@
 #include "io/obj_reader.h"
 
 #include "emu/error.h"
-#include "io/atomic_file.h"
+#include "io/input_file.h"
 
 #include <fmt/format.h>
 

@@ -18,11 +18,59 @@ std::string_view tessemu_version()
 
 namespace {
 
+// How many bytes of text begin with a character in UTF-8, as RFC 3629 has it; 0: none does.
+std::size_t utf8_length(std::string_view text)
+{
+    auto const byte = [&](std::size_t i) {
+        return i < text.size() ? std::uint8_t(text[i]) : std::uint8_t(0);
+    };
+    std::uint8_t const first = byte(0);
+    if (first < 0x80) return 1;
+    if (first < 0xc2 || first > 0xf4) return 0;
+    std::size_t const n = first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+    // Neither overlong, nor half of a pair, nor beyond U+10FFFF.
+    std::uint8_t const low = first == 0xe0   ? 0xa0
+                             : first == 0xf0 ? 0x90
+                                             : 0x80,
+                       high = first == 0xed   ? 0x9f
+                              : first == 0xf4 ? 0x8f
+                                              : 0xbf;
+    if (byte(1) < low || byte(1) > high) return 0;
+    for (std::size_t i = 2; i < n; ++i)
+        if (byte(i) < 0x80 || byte(i) > 0xbf) return 0;
+    return n;
+}
+
+} // namespace
+
+std::string as_utf8(std::string_view bytes)
+{
+    std::string out;
+    while (!bytes.empty()) {
+        std::size_t const n = bytes[0] == '\\' ? 0 : utf8_length(bytes);
+        if (n == 0)
+            out += fmt::format("\\x{:02X}", std::uint8_t(bytes[0]));
+        else
+            out += bytes.substr(0, n);
+        bytes.remove_prefix(std::max<std::size_t>(n, 1));
+    }
+    return out;
+}
+
+namespace {
+
 Json to_json(Config const& config)
 {
     Json j = Json::object();
     for (auto const& entry : config) // no structured binding: clang 14 cannot capture one
-        std::visit([&](auto const& value) { j[entry.first] = value; }, entry.second);
+        std::visit(
+            [&](auto const& value) {
+                if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>)
+                    j[entry.first] = as_utf8(value);
+                else
+                    j[entry.first] = value;
+            },
+            entry.second);
     return j;
 }
 
@@ -40,8 +88,9 @@ Json start(ReportHeader const& header)
     j["config"] = to_json(header.config);
     j["inputs"] = Json::array();
     for (auto const& [name, sha256] : header.inputs)
-        j["inputs"].push_back({{"name", name}, {"sha256", sha256}});
-    j["warnings"] = header.warnings;
+        j["inputs"].push_back({{"name", as_utf8(name)}, {"sha256", sha256}});
+    j["warnings"] = Json::array();
+    for (std::string const& w : header.warnings) j["warnings"].push_back(as_utf8(w));
     return j;
 }
 

@@ -18,11 +18,15 @@ namespace tessemu {
 /// Version of the library, as CMake has it.
 std::string_view tessemu_version();
 
+/// Bytes as UTF-8: each that is none becomes \xNN, and a backslash \x5C, so that they can be had
+/// back. Names of files, and texts that quote what files say, are such bytes.
+std::string as_utf8(std::string_view bytes);
+
 /// An option with its resolved value.
 using ConfigValue = std::variant<bool, std::int64_t, double, std::string, std::vector<double>>;
 using Config = std::vector<std::pair<std::string, ConfigValue>>;
 
-/// What all results say.
+/// What all results say; texts are bytes, see as_utf8.
 struct ReportHeader {
     std::string verb;
     Config config;

@@ -244,7 +244,9 @@ void run(char const* picture)
             for (int y = 0; y < kSize; ++y)
                 std::copy_n(pixels.begin() + std::ptrdiff_t(kSize - 1 - y) * kSize * 4, kSize * 4,
                             image.texel(0, y));
-            write_image(image, picture);
+            OutputFile out(picture);
+            write_image(image, out);
+            out.commit();
         }
         glEnable(GL_RASTERIZER_DISCARD);
         std::printf("geometry %d %.4f\n", factor, median_ms(draw));

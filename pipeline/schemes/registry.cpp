@@ -101,6 +101,9 @@ Parameters resolve_parameters(SchemeInfo const& info, ParameterTexts const& give
         if (p == info.parameters.end())
             throw Error(info.name + " has no parameter '" + name + "'" +
                         (known.empty() ? "" : "; there is " + known));
+        auto const is_name = [&, &n = name](auto const& other) { return other.first == n; };
+        if (std::count_if(given.begin(), given.end(), is_name) > 1)
+            throw Error(info.name + ": '" + name + "' is set more than once");
         out.set(name, parsed(info, *p, text));
     }
     return out;

@@ -3,7 +3,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/figure.h"
 
-#include "io/atomic_file.h"
 #include "io/image_reader.h"
 #include "shaders_cpp/pixel/colored_view.h"
 #include "tests/io/picture_hash.h"
@@ -26,6 +25,20 @@ fs::path scratch()
         fs::temp_directory_path() / ("tessemu_figure_test_" + std::to_string(getpid()));
     fs::create_directories(p);
     return p;
+}
+
+void write(Figure const& figure, fs::path const& path)
+{
+    OutputFile out(path);
+    write_figure(figure, out);
+    out.commit();
+}
+
+void write(Roofline const& roofline, fs::path const& path)
+{
+    OutputFile out(path);
+    write_roofline(roofline, out);
+    out.commit();
 }
 
 TEST(HeatColor, RunsFromBlueToRed)
@@ -51,7 +64,7 @@ TEST(Figure, HoldsItsPanelsAndScales)
     red.clear({1, 0, 0, 1}, ThreadPool(1));
     dark.clear({0, 0, 0, 1}, ThreadPool(1));
     fs::path const path = scratch() / "figure.exr";
-    write_figure({2, {{&red, "a"}, {&dark, "b"}, {&dark, "c"}}, {{"x", 1}, {"y", 2}}}, path);
+    write(Figure{2, {{&red, "a"}, {&dark, "b"}, {&dark, "c"}}, {{"x", 1}, {"y", 2}}}, path);
     HeightImage const image = read_height_image(path); // the red channel
     EXPECT_EQ(image.width, 12 + 2 * (40 + 12));
     EXPECT_EQ(image.height, 12 + 2 * (30 + 28 + 12) + 46);
@@ -65,9 +78,9 @@ TEST(Figure, HoldsItsPanelsAndScales)
     int const bar = image.height - 46;
     EXPECT_EQ(at(12, bar), 0);      // blue
     EXPECT_EQ(at(12 + 39, bar), 1); // red
-    EXPECT_THROW(write_figure({2, {{&red, "a"}, {&other, "b"}}, {}}, path), WriteError);
-    EXPECT_THROW(write_figure({1, {}, {}}, path), WriteError);
-    EXPECT_THROW(write_figure({1, {{&red, "a"}}, {}}, scratch() / "a.bmp"), WriteError);
+    EXPECT_THROW(write(Figure{2, {{&red, "a"}, {&other, "b"}}, {}}, path), WriteError);
+    EXPECT_THROW(write(Figure{1, {}, {}}, path), WriteError);
+    EXPECT_THROW(write(Figure{1, {{&red, "a"}}, {}}, scratch() / "a.bmp"), WriteError);
     fs::remove_all(scratch());
 }
 
@@ -75,11 +88,11 @@ TEST(Roofline, DrawsWithAndWithoutAKnownRoof)
 {
     fs::path const path = scratch() / "roof.png";
     // Stored results of version 0.1.0.
-    write_roofline({"t", 1e11, 1e10, {{"a", 0.5, 4e9}, {"b", 30, 9e10}}}, path);
+    write(Roofline{"t", 1e11, 1e10, {{"a", 0.5, 4e9}, {"b", 30, 9e10}}}, path);
     EXPECT_EQ(test::picture_hash(path), "976a5e47374f5ea3");
-    write_roofline({"t", std::numeric_limits<double>::infinity(), 1e10, {{"a", 0.5, 4e9}}}, path);
+    write(Roofline{"t", std::numeric_limits<double>::infinity(), 1e10, {{"a", 0.5, 4e9}}}, path);
     EXPECT_EQ(test::picture_hash(path), "5afd7de0497fbaed");
-    EXPECT_THROW(write_roofline({"t", 1e11, std::numeric_limits<double>::infinity(), {}}, path),
+    EXPECT_THROW(write(Roofline{"t", 1e11, std::numeric_limits<double>::infinity(), {}}, path),
                  WriteError);
     fs::remove_all(scratch());
 }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/image_writer.h"
 
-#include "io/atomic_file.h"
 #include "io/image_reader.h"
 #include "tests/support/files.h"
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 #include <unistd.h>
 
@@ -25,13 +26,20 @@ fs::path scratch()
     return p;
 }
 
+void write(ColorTarget const& target, fs::path const& path)
+{
+    OutputFile out(path);
+    write_image(target, out);
+    out.commit();
+}
+
 TEST(ImageWriter, WritesPngAndExrAndLeavesNothingElse)
 {
     fs::path const folder = scratch();
     ColorTarget target(5, 3, Format::R32G32B32A32_FLOAT);
     target.clear({0.25f, 0.5f, 1.0f, 1.0f}, ThreadPool(1));
-    write_image(target, folder / "a.png");
-    write_image(target, folder / "a.exr");
+    write(target, folder / "a.png");
+    write(target, folder / "a.exr");
     EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 2);
     for (auto const& [name, red] : {std::pair("a.png", 64.0f / 255), {"a.exr", 0.25f}}) {
         HeightImage const image = read_height_image(folder / name);
@@ -42,26 +50,25 @@ TEST(ImageWriter, WritesPngAndExrAndLeavesNothingElse)
     EXPECT_EQ(test::read_text(folder / "a.png").substr(1, 3), "PNG");
 }
 
+// The same bytes at any time: no date is in them.
+TEST(ImageWriter, WritesTheSameBytesASecondLater)
+{
+    fs::path const folder = scratch();
+    ColorTarget target(5, 3);
+    target.clear({}, ThreadPool(1));
+    for (char const* name : {"a.png", "a.exr"}) write(target, folder / name);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    for (char const* name : {"b.png", "b.exr"}) write(target, folder / name);
+    EXPECT_TRUE(test::read_text(folder / "a.png") == test::read_text(folder / "b.png"));
+    EXPECT_TRUE(test::read_text(folder / "a.exr") == test::read_text(folder / "b.exr"));
+}
+
 TEST(ImageWriter, RefusesOtherExtensionsAndMissingFolders)
 {
     ColorTarget target(4, 4);
     target.clear({}, ThreadPool(1));
-    EXPECT_THROW(write_image(target, scratch() / "a.bmp"), WriteError);
-    EXPECT_THROW(write_image(target, scratch() / "missing" / "a.png"), WriteError);
-}
-
-TEST(AtomicFile, AFailedWriteKeepsTheOldFile)
-{
-    fs::path const folder = scratch();
-    write_file(folder / "a.txt", "old");
-    EXPECT_THROW(write_atomically(folder / "a.txt",
-                                  [](fs::path const& temporary) {
-                                      write_file(temporary, "half");
-                                      throw Error("no more");
-                                  }),
-                 Error);
-    EXPECT_EQ(test::read_text(folder / "a.txt"), "old");
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
+    EXPECT_THROW(write(target, scratch() / "a.bmp"), WriteError);
+    EXPECT_THROW(write(target, scratch() / "missing" / "a.png"), WriteError);
 }
 
 TEST(ColorTarget, NamesItsLimit)
@@ -83,8 +90,8 @@ TEST(ImageReader, ReadsHeightsRowsFromTheTop)
     for (int y = 0; y < 3; ++y)
         for (int x = 0; x < 5; ++x)
             encode(target.format(), {float(x + 5 * y) / 15, 1, 1, 1}, target.texel(x, y));
-    write_image(target, folder / "a.exr");
-    write_image(target, folder / "a.png");
+    write(target, folder / "a.exr");
+    write(target, folder / "a.png");
     HeightImage const exact = read_height_image(folder / "a.exr");
     HeightImage const rounded = read_height_image(folder / "a.png");
     for (HeightImage const* image : {&exact, &rounded}) {
@@ -105,7 +112,7 @@ TEST(ImageReader, RefusesWhatIsNoHeightMap)
     EXPECT_THROW(read_height_image(folder / "text.png"), FormatError);
     ColorTarget target(2, 2, Format::R32G32B32A32_FLOAT);
     target.clear({INFINITY, 0, 0, 0}, ThreadPool(1));
-    write_image(target, folder / "infinite.exr");
+    write(target, folder / "infinite.exr");
     EXPECT_THROW(read_height_image(folder / "infinite.exr"), FormatError);
 }
 

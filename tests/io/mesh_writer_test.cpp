@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/mesh_writer.h"
 
-#include "io/atomic_file.h"
 #include "io/model.h"
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/files.h"
@@ -34,12 +33,14 @@ struct Exported {
 Exported export_model(std::string const& model, fs::path const& path, bool weld, float tess)
 {
     SchemeOnMesh const m = build_scheme(find_scheme("gregory-stencil"), load_model(model).mesh);
-    MeshWriter writer(path, weld);
+    OutputFile out(path);
+    MeshWriter writer(out, weld);
     FrameSettings s;
     s.tess_factor = tess;
     visit_surface(*m.patches, s, ThreadPool(2),
                   [&](SurfacePatch const& patch) { writer.add(patch); });
     writer.finish();
+    out.commit();
     return {writer.vertices(), writer.triangles()};
 }
 
@@ -91,20 +92,22 @@ TEST(MeshWriter, PlyAndObjHoldTheSameNumbers)
     EXPECT_EQ(z, first[2]);
 }
 
-TEST(MeshWriter, LeavesNothingBehindUnlessFinished)
+TEST(MeshWriter, LeavesNothingBehindUnlessCommitted)
 {
     fs::path const path = scratch() / "never.obj";
     fs::remove(path);
     std::size_t const before =
         std::size_t(std::distance(fs::directory_iterator(scratch()), fs::directory_iterator()));
     {
-        MeshWriter const writer(path, false);
+        OutputFile out(path);
+        MeshWriter writer(out, false);
+        writer.finish();
     }
     EXPECT_EQ(
         std::size_t(std::distance(fs::directory_iterator(scratch()), fs::directory_iterator())),
         before);
-    EXPECT_THROW(MeshWriter(scratch() / "a.stl", false), WriteError);
-    EXPECT_THROW(MeshWriter(scratch() / "missing" / "a.obj", false), WriteError);
+    OutputFile other(scratch() / "a.stl");
+    EXPECT_THROW(MeshWriter(other, false), WriteError);
 }
 
 TEST(DomainToUnit, TurnsCornersBackExactly)

@@ -2,7 +2,6 @@
 #include "io/obj_reader.h"
 
 #include "emu/error.h"
-#include "io/atomic_file.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,0 +1,49 @@
+// Runs the program as its users do.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tests/support/files.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace tessemu::test {
+
+struct Result {
+    int status; ///< -1: ended by a signal
+    std::string out, err;
+};
+
+/// A folder of the test's own.
+inline std::filesystem::path scratch()
+{
+    static std::filesystem::path const folder = [] {
+        auto const p =
+            std::filesystem::temp_directory_path() / ("tessemu_cli_" + std::to_string(getpid()));
+        std::filesystem::create_directories(p);
+        return p;
+    }();
+    return folder;
+}
+
+/// A command of the shell.
+inline Result run_command(std::string const& command)
+{
+    std::filesystem::path const out = scratch() / "stdout", err = scratch() / "stderr";
+    int const status =
+        std::system((command + " >" + out.string() + " 2>" + err.string() + " </dev/null").c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
+}
+
+/// The program with these arguments.
+inline Result run(std::string const& arguments)
+{
+    return run_command(std::string(TESSEMU_PROGRAM) + " " + arguments);
+}
+
+} // namespace tessemu::test
