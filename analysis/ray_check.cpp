@@ -162,8 +162,8 @@ struct Crossings {
 };
 
 // On which side of an edge from b to c a ray passes: the sign of u = d . ((b - o) x (c - o)). Where
-// it runs exactly through the edge, or through a vertex, it is thought moved by (e, e^2, e^3) for an
-// e as small as need be, and passes beside it: u changes by e (d x (c - b)).x and so on. All
+// it runs exactly through the edge, or through a vertex, it is thought moved by (e, e^2, e^3) for
+// an e as small as need be, and passes beside it: u changes by e (d x (c - b)).x and so on. All
 // triangles see the same moved ray, so that its crossings balance at vertices too.
 bool is_negative(Exact u, Exact3 const& d, glm::vec3 b, glm::vec3 c)
 {
@@ -329,8 +329,8 @@ struct Sight {
 
 // The transform works in floats, where the mesh lies. A row's constant is a dot product with the
 // eye times a scale, four roundings; a clip coordinate has a product and three sums more. So it is
-// off by at most 8 * 2^-24 of the sum of its terms' sizes. x/w with |x| <= w is off by the errors of
-// both, over w.
+// off by at most 8 * 2^-24 of the sum of its terms' sizes. x/w with |x| <= w is off by the errors
+// of both, over w.
 Sight sight_of(std::vector<glm::vec3> const& positions, Camera const& camera, int width, int height)
 {
     Sight out;

@@ -6,6 +6,9 @@
 #include "pipeline/mesh/join.h"
 #include "shaders_cpp/pixel/id_view.h"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -246,10 +249,12 @@ private:
             skip(v, is_open());
             return v;
         }
-        // What is behind is cut off, and so is the balance of what is in front of it.
-        if (!(surface_.extent().nearest >= s_.frame.camera.near_plane)) {
-            skip(v, "the eye is inside the surface, or some of it is behind the eye or nearer than "
-                    "the near plane");
+        // What is behind the eye is cut off, and what it balances is not. The near plane cuts
+        // nothing here.
+        if (double const w = surface_.extent().nearest; w < INFINITY && !(w > depth_error())) {
+            skip(v,
+                 "the eye is inside the surface, or some of it is behind the eye, where it is cut "
+                 "off");
             return v;
         }
         count_hits(patches_, seen_surface(s_.frame), s_.frame.width, s_.frame.height, "", v);
@@ -260,6 +265,17 @@ private:
         count_hits(MovedPoints(patches_, half_pixels), rounded, kLattice, kLattice,
                    ", vertices rounded to half pixels", v);
         return settled(std::move(v), "no sample was covered");
+    }
+
+    // Of w: a product and three sums each, and a constant that four roundings made: 8 * 2^-24.
+    double depth_error() const
+    {
+        SharedEdges::Extent const& e = surface_.extent();
+        Camera const& camera = s_.frame.camera;
+        glm::dvec3 const reach =
+            glm::max(glm::abs(glm::dvec3(e.low)), glm::abs(glm::dvec3(e.high)));
+        return 0x1p-21 * glm::dot(glm::abs(glm::dvec3(camera.backward())),
+                                  reach + glm::abs(glm::dvec3(camera.eye)));
     }
 
     void count_hits(PatchMesh const& patches, SurfaceSettings const& surface, int width, int height,

@@ -58,7 +58,7 @@ std::string join_hint(Seams const& seams)
     // Two digits that are no less.
     std::string const apart = seams.apart > 0 ? fmt::format("{:.1e}", 1.06 * seams.apart) : "0";
     return fmt::format("{} open edges lie on others with other vertices: --join DISTANCE joins "
-                       "vertices on input, --join {} these",
+                       "them, here --join {} or more",
                        seams.edges, apart);
 }
 
@@ -90,10 +90,7 @@ int run(CheckRequest const& o)
     Job job = prepare(o.surface, "check");
     set_picture(job, o.picture, o.surface);
     std::string const hint = join_hint(find_seams(job.surface.mesh->base_topology()));
-    if (!hint.empty()) {
-        print_warnings({hint});
-        job.header.warnings.push_back(hint);
-    }
+    if (!hint.empty()) job.header.warnings.push_back(hint);
     WatertightSettings s;
     s.frame = job.frame;
     s.parity = float(o.parity);
@@ -126,6 +123,7 @@ int run(CheckRequest const& o)
     if (!o.output.empty()) write_image(draw_cracks(patches, s, verdicts, threads), o.output);
     write_result(
         o.run.json, [&] { return check_report(job.header, rows); }, check_table(rows, 3));
+    if (!hint.empty() && any_checked(verdicts)) print_warnings({hint}); // else an error says so
     if (!all_hold(verdicts)) return 1;
     std::string const& model = o.surface.model.model;
     if (std::string const why = why_not_found(o.mistake, verdicts); !why.empty())

@@ -124,7 +124,9 @@ int CommandLine::run(int argc, char const* const* argv)
             fmt::print(stderr, "{}: '{}' is not a verb; there are{}\n", name_, argv[1], verbs);
             return 2;
         }
-        fmt::print(stderr, "{}: {}\n", name_, e.what());
+        std::string what = e.what();
+        std::erase(what, kNumber);
+        fmt::print(stderr, "{}: {}\n", name_, what);
         return 2;
     }
     try {

@@ -31,10 +31,11 @@ int run_batch(TessellateRequest const& o)
         out += tessellator_answer(run_tessellator_case(c)) + "\n";
     }
     if (illegal)
-        print_warnings({fmt::format("{}:{}: {} cases ask for an output that Direct3D 11 does not "
-                                    "have in their domain (rule R75), this is the first: they are "
-                                    "answered as the reference tessellator does",
-                                    o.batch, first, illegal)});
+        print_warnings({fmt::format(
+            "{}:{}: Direct3D 11 has no such output in this domain (rule R75){}: answered as the "
+            "reference tessellator does",
+            o.batch, first,
+            illegal > 1 ? fmt::format(", and in {} cases more", illegal - 1) : "")});
     write_text(o.output.empty() ? "-" : o.output, out);
     return 0;
 }

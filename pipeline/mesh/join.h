@@ -21,9 +21,9 @@ struct JoinedMesh {
 };
 
 /// Joins vertices: two that lie within `distance` become one, and so does a chain of them. The one
-/// of the lowest number stays, where it lies. Faces, tags and texture coordinates follow; of several
-/// creases on an edge, or corners on a vertex, the sharpest stays, and a crease between two vertices
-/// that are one goes.
+/// of the lowest number stays, where it lies. Faces, tags and texture coordinates follow; of
+/// several creases on an edge, or corners on a vertex, the sharpest stays, and a crease between two
+/// vertices that are one goes.
 ///
 /// \param distance  in the mesh's units; 0 joins equal positions
 /// \cost  n log n for positions that do not crowd within the distance
