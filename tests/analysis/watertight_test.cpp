@@ -524,13 +524,13 @@ TEST(RayCheck, DoesNotDependOnWhereTheMeshLiesOrOnItsSize)
     RayMesh sphere = uv_sphere();
     for (glm::vec3& p : sphere.positions) p = glm::round(p * 1024.0f) / 1024.0f;
     ThreadPool const threads;
-    RayCheck const here = check_rays(sphere, RayAim::Vertices, 50000, 3, threads);
+    RayCheck const here = check_rays(sphere, RayAim::Vertices, 10000, 3, threads);
     EXPECT_GT(here.misses, 0u);
     EXPECT_TRUE(here.confirmed.empty());
     auto const expect_same = [&](auto const& move, char const* what) {
         RayMesh moved = sphere;
         for (glm::vec3& p : moved.positions) p = move(p);
-        RayCheck const there = check_rays(moved, RayAim::Vertices, 50000, 3, threads);
+        RayCheck const there = check_rays(moved, RayAim::Vertices, 10000, 3, threads);
         EXPECT_EQ(there.misses, here.misses) << what;
         EXPECT_EQ(there.refuted, here.refuted) << what;
         EXPECT_EQ(there.folds, here.folds) << what;

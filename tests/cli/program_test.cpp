@@ -137,13 +137,10 @@ TEST(Program, BadUsageExitsTwoWithOneLineThatNamesTheValue)
              {"check golem --break fold --break-face 0", "--break-face is 0, it must be 1 to 70"},
              {"check golem --break fold --break-face -3", "--break-face is -3, it must be 1 to 70"},
              {"check golem --break-face 3", "--break-face needs --break"},
-             {"check jug --rays 0 --size 64x64 --break fold", "skipped, the surface is open"},
-             {"check jug --rays 0 --size 64x64 --break topleft", "coverage is skipped"},
-             {"check golem --rays 0 --size 64x64 --tess 1 --break order", "the same bits"},
              {"check jug --join -1", "--join is -1, it must be 0 or more"},
              {"draw jug --join nan", "--join: 'nan' is not a number"},
              {"info jug --join -inf", "--join: '-inf' is not a number"},
-             {"export jug --join 1e6", "the shortest edge is "},
+             {"info jug --join 1e6", "the shortest edge is "},
              {"check golem --break fold --direct3d 10", "tessellator"},
              {"check golem --break weights --scheme pm", "stencil form"},
              {"draw jug --view error --error-max 1", "POSITION,ANGLE"},
@@ -491,6 +488,19 @@ TEST(Program, CheckSaysThatNothingWasCheckedAndJoinsVertices)
     Json const info = Json::parse(run("info " + cube.string() + " --join 0 --json -").out)["mesh"];
     EXPECT_EQ(info["vertices"], 8);
     EXPECT_EQ(info["boundary_edges"], 0);
+}
+
+TEST(Program, CheckExitsTwoWhereAPlantedMistakeIsNotFound)
+{
+    for (auto const& [arguments, why] : std::vector<std::pair<std::string, std::string>>{
+             {"jug --break fold", "coverage and raycast are skipped, the surface is open"},
+             {"jug --break topleft", "coverage is skipped, the surface is open"},
+             {"golem --tess 1 --break order", "the same bits"}}) {
+        Result const r = run("check " + arguments + " --rays 500 --size 64x64");
+        EXPECT_EQ(r.status, 2) << arguments;
+        EXPECT_NE(r.err.find(why), std::string::npos) << r.err;
+        EXPECT_NE(r.out.find("position"), std::string::npos) << "verdicts are given";
+    }
 }
 
 // What was asked for by its number in the file, where faces before it were left out.
