@@ -230,9 +230,9 @@ private:
             }
         }
         if (undefined)
-            v.reason = both(counted(undefined, "point has a normal", "points have a normal") +
-                                " of length 0, or none, in all patches: left out",
-                            v.reason);
+            v.reason =
+                both(v.reason, counted(undefined, "point has a normal", "points have a normal") +
+                                   " of length 0, or none, in all patches: left out");
         return settled(std::move(v), undefined ? "" : nothing_shared());
     }
 

@@ -313,7 +313,8 @@ TEST(Program, FacesOfAnyKindAreDrawnWithWarningsThatCountThem)
     Json const& verdicts = check["verdicts"];
     for (char const* name : {"topology", "position", "normal"}) {
         EXPECT_EQ(verdicts[name]["verdict"], "pass") << name;
-        EXPECT_EQ(verdicts[name]["reason"], "1 cut edge is not compared") << name;
+        auto const reason = verdicts[name]["reason"].get<std::string>();
+        EXPECT_EQ(reason.find("1 cut edge is not compared"), 0u) << name << ": " << reason;
     }
     EXPECT_EQ(verdicts["coverage"]["verdict"], "skipped");
     Result const strict = run("export " + cage.string() + " --strict -o " + out.string());
