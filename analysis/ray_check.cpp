@@ -327,10 +327,7 @@ struct Sight {
     double error_px = 0;                             ///< the same across, in pixels
 };
 
-// The transform works in floats, where the mesh lies. A row's constant is a dot product with the
-// eye times a scale, four roundings; a clip coordinate has a product and three sums more. So it is
-// off by at most 8 * 2^-24 of the sum of its terms' sizes. x/w with |x| <= w is off by the errors
-// of both, over w.
+// x/w with |x| <= w is off by the errors of both, over w.
 Sight sight_of(std::vector<glm::vec3> const& positions, Camera const& camera, int width, int height)
 {
     Sight out;
@@ -342,18 +339,23 @@ Sight sight_of(std::vector<glm::vec3> const& positions, Camera const& camera, in
         out.nearest = std::min(out.nearest, away);
         out.farthest = std::max(out.farthest, away);
     }
-    auto const error = [&](glm::vec3 axis, double scale) {
-        return scale * 0x1p-21 * dot(abs(glm::dvec3(axis)), size + abs(eye));
-    };
-    double const aspect = double(width) / height, w = error(camera.backward(), 1),
-                 x = error(camera.right(), camera.focal / aspect),
-                 y = error(camera.true_up(), camera.focal);
+    double const aspect = double(width) / height,
+                 w = clip_rounding(camera.backward(), camera.eye, size),
+                 x = camera.focal / aspect * clip_rounding(camera.right(), camera.eye, size),
+                 y = camera.focal * clip_rounding(camera.true_up(), camera.eye, size);
     out.depth_error = w / out.nearest;
     out.error_px = std::max((x + w) * width, (y + w) * height) / (2 * out.nearest);
     return out;
 }
 
 } // namespace
+
+// A row's constant is a dot product with the eye times a scale, four roundings; a clip coordinate
+// has a product and three sums more.
+double clip_rounding(glm::vec3 axis, glm::vec3 eye, glm::dvec3 size)
+{
+    return 8 * 0x1p-24 * dot(abs(glm::dvec3(axis)), size + abs(glm::dvec3(eye)));
+}
 
 VisibilityCheck check_visibility(RayMesh const& mesh,
                                  std::vector<std::uint32_t> const& face_of_triangle,

@@ -7,7 +7,6 @@
 #include "shaders_cpp/pixel/id_view.h"
 
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -251,7 +250,7 @@ private:
         }
         // What is behind the eye is cut off, and what it balances is not. The near plane cuts
         // nothing here.
-        if (double const w = surface_.extent().nearest; w < INFINITY && !(w > depth_error())) {
+        if (surface_.extent().nearest < INFINITY && !lies_before_the_eye()) {
             skip(v,
                  "the eye is inside the surface, or some of it is behind the eye, where it is cut "
                  "off");
@@ -267,15 +266,13 @@ private:
         return settled(std::move(v), "no sample was covered");
     }
 
-    // Of w: a product and three sums each, and a constant that four roundings made: 8 * 2^-24.
-    double depth_error() const
+    // Of w, which is rounded.
+    bool lies_before_the_eye() const
     {
         SharedEdges::Extent const& e = surface_.extent();
         Camera const& camera = s_.frame.camera;
-        glm::dvec3 const reach =
-            glm::max(glm::abs(glm::dvec3(e.low)), glm::abs(glm::dvec3(e.high)));
-        return 0x1p-21 * glm::dot(glm::abs(glm::dvec3(camera.backward())),
-                                  reach + glm::abs(glm::dvec3(camera.eye)));
+        glm::dvec3 const size = glm::max(glm::abs(glm::dvec3(e.low)), glm::abs(glm::dvec3(e.high)));
+        return e.nearest > clip_rounding(camera.backward(), camera.eye, size);
     }
 
     void count_hits(PatchMesh const& patches, SurfaceSettings const& surface, int width, int height,
