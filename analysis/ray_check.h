@@ -64,7 +64,7 @@ struct RayCheck {
 RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::uint32_t seed,
                     ThreadPool const& threads);
 
-/// By how much the view's transform, in floats, may be off at most: in dot(axis, p - eye), for points
+/// By how much the view's transform, in floats, may be off at most in dot(axis, p - eye) for points
 /// whose coordinates are up to `size`. A clip coordinate is that times a scale.
 double clip_rounding(glm::vec3 axis, glm::vec3 eye, glm::dvec3 size);
 

@@ -518,6 +518,17 @@ TEST(RayCheck, RaysAtVerticesAccuseEmbreeNotTheSurface)
     EXPECT_GT(c.refuted, c.misses / 2);
 }
 
+// Rays that run exactly through vertices, among them one whose neighbours all lie to one side.
+TEST(RayCheck, BalancesAtVertices)
+{
+    RayMesh octahedron;
+    octahedron.positions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+    octahedron.triangles = {0, 1, 2, 1, 3, 2, 3, 4, 2, 4, 0, 2, 1, 0, 5, 3, 1, 5, 4, 3, 5, 0, 4, 5};
+    RayCheck const c = check_rays(octahedron, RayAim::Vertices, 200000, 1, ThreadPool());
+    EXPECT_GT(c.misses, 1000u) << "Embree loses rays at vertices";
+    EXPECT_TRUE(c.confirmed.empty());
+}
+
 // A mesh on a lattice so coarse that every float involved is exact: in its own frame it is the same
 // mesh wherever it lies and whatever its size, and so are the rays.
 TEST(RayCheck, DoesNotDependOnWhereTheMeshLiesOrOnItsSize)
