@@ -104,9 +104,9 @@ struct BuildOptions {
     bool strict = false;
 };
 
-/// Joins vertices if asked to, makes the mesh a manifold, refines it as options and scheme ask, checks it and builds. Throws
-/// MeshError for a mesh that the scheme does not take, or, if strict, that is no manifold, naming a
-/// face of the given mesh; LimitError; Error.
+/// Joins vertices if asked to, makes the mesh a manifold, refines it as options and scheme ask,
+/// checks it and builds. Throws MeshError for a mesh that the scheme does not take, or, if strict,
+/// that is no manifold, naming a face of the given mesh; LimitError; Error.
 SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options = {});
 /// The mesh alone, refined as for the scheme, whether it takes it or not: `patches` is none.
 SchemeOnMesh refine_for_scheme(Scheme const& scheme, ControlMesh mesh,
