@@ -442,4 +442,62 @@ std::unique_ptr<PatchMesh> with_mistake(PatchMesh const& patches, PlantedMistake
     return out;
 }
 
+namespace {
+
+// Verdicts that must find a mistake where it shows (docs/watertight.md).
+std::vector<std::string> found_by(Mistake mistake)
+{
+    switch (mistake) {
+    case Mistake::Order:
+        return {"position", "normal"};
+    case Mistake::Contraction:
+    case Mistake::Weights:
+        return {"position"};
+    case Mistake::Factors:
+        return {"topology"};
+    case Mistake::Normals:
+        return {"normal"};
+    case Mistake::Fold:
+        return {"coverage", "raycast"};
+    case Mistake::TopLeft:
+        return {"coverage"};
+    default:
+        return {};
+    }
+}
+
+// What changes nothing.
+char const* no_trace_of(Mistake mistake)
+{
+    switch (mistake) {
+    case Mistake::Factors:
+        return "the factors come out as the same segments";
+    case Mistake::Fold:
+        return "no sample and no ray meets the patch";
+    case Mistake::TopLeft:
+        return "no sample lies on an edge";
+    default:
+        return "all shared points come out with the same bits; more of them lie inside edges of "
+               "more segments";
+    }
+}
+
+} // namespace
+
+std::string why_not_found(Mistake mistake, std::vector<CheckedVerdict> const& verdicts)
+{
+    if (mistake == Mistake::None || !all_hold(verdicts)) return "";
+    std::string const what = "the mistake '" + std::string(name_of(mistake)) + "' is not found: ";
+    std::vector<std::string> const finders = found_by(mistake);
+    std::string reason;
+    for (CheckedVerdict const& v : verdicts) {
+        if (std::find(finders.begin(), finders.end(), v.name) == finders.end()) continue;
+        if (v.verdict == Verdict::Pass) return what + no_trace_of(mistake);
+        if (reason.empty()) reason = v.reason;
+    }
+    std::string names;
+    for (std::string const& name : finders) names += (names.empty() ? "" : " and ") + name;
+    return what + names + (finders.size() == 1 ? " is" : " are") + " skipped, " + reason;
+}
+
 } // namespace tessemu

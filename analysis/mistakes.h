@@ -6,7 +6,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pipeline/frame.h"
+#include "analysis/watertight.h"
 
 #include <memory>
 #include <optional>
@@ -49,5 +49,9 @@ PlantedMistake plant_mistake(RefinedMesh const& mesh, Mistake kind);
 /// Throws Error where the mistake cannot be planted, and where nothing would have it.
 std::unique_ptr<PatchMesh> with_mistake(PatchMesh const& patches, PlantedMistake const& mistake,
                                         FrameSettings const& frame);
+
+/// Why a planted mistake has not been found: the verdicts that find its kind are skipped, or it
+/// changes nothing there. Empty where one fails.
+std::string why_not_found(Mistake mistake, std::vector<CheckedVerdict> const& verdicts);
 
 } // namespace tessemu

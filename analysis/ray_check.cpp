@@ -11,6 +11,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <string>
 #include <tuple>
 
 namespace tessemu {
@@ -50,6 +51,50 @@ public:
 
 private:
     std::uint64_t state_;
+};
+
+// From where a mesh lies to its own frame. A component is moved only where all its values are at
+// least as far from 0 as they are from each other. Then they are multiples of the lowest one's last
+// bit, the middle too, and the differences are less than 2^24 of them: exact. Elsewhere they lie
+// within twice the extent from 0 as they are.
+class OwnFrame {
+public:
+    explicit OwnFrame(std::vector<glm::vec3> const& positions)
+    {
+        glm::vec3 low(INFINITY), high(-INFINITY);
+        for (glm::vec3 const& p : positions) low = min(low, p), high = max(high, p);
+        double size = 0;
+        for (int k = 0; k < 3; ++k) {
+            double const extent = double(high[k]) - double(low[k]);
+            size = std::max(size, extent);
+            double const away = low[k] > 0 ? low[k] : -high[k];
+            if (extent <= away) middle_[k] = float((double(low[k]) + double(high[k])) / 2);
+        }
+        if (size > 0 && size < INFINITY) exponent_ = std::ilogb(size);
+    }
+    glm::vec3 into(glm::vec3 p) const
+    {
+        glm::vec3 out;
+        for (int k = 0; k < 3; ++k)
+            out[k] = float(std::scalbn(double(p[k]) - middle_[k], -exponent_));
+        return out;
+    }
+    std::vector<glm::vec3> into(std::vector<glm::vec3> points) const
+    {
+        for (glm::vec3& p : points) p = into(p);
+        return points;
+    }
+    glm::vec3 out_of(glm::vec3 p) const
+    {
+        glm::vec3 out;
+        for (int k = 0; k < 3; ++k)
+            out[k] = float(std::scalbn(double(p[k]), exponent_) + middle_[k]);
+        return out;
+    }
+
+private:
+    glm::dvec3 middle_{0};
+    int exponent_ = 0;
 };
 
 class Scene {
@@ -116,24 +161,27 @@ struct Crossings {
     int balance = 0; // fronts less backs
 };
 
-// A ray that runs exactly through an edge passes on one side of it: the same side for both
-// triangles, which have the edge in opposite directions.
-bool is_negative(Exact x, glm::vec3 a, glm::vec3 b)
+// On which side of an edge from b to c a ray passes: the sign of u = d . ((b - o) x (c - o)). Where
+// it runs exactly through the edge, or through a vertex, it is thought moved by (e, e^2, e^3) for
+// an e as small as need be, and passes beside it: u changes by e (d x (c - b)).x and so on. All
+// triangles see the same moved ray, so that its crossings balance at vertices too.
+bool is_negative(Exact u, Exact3 const& d, glm::vec3 b, glm::vec3 c)
 {
-    if (x != 0) return x < 0;
-    return std::tuple(a.x, a.y, a.z) < std::tuple(b.x, b.y, b.z);
+    if (u != 0) return u < 0;
+    Exact3 const change = cross3(d, difference(c, b));
+    return change.x != 0 ? change.x < 0 : change.y != 0 ? change.y < 0 : change.z < 0;
 }
 
-Crossings cross_exactly(RayMesh const& mesh, Ray const& r)
+Crossings cross_exactly(std::vector<glm::vec3> const& positions,
+                        std::vector<std::uint32_t> const& triangles, Ray const& r)
 {
     glm::dvec3 const o(r.origin), d(glm::normalize(glm::dvec3(r.direction)));
     Exact3 const direction{Exact(r.direction.x), Exact(r.direction.y), Exact(r.direction.z)};
     Crossings out;
     Exact best_numerator = 0, best_denominator = 1;
-    for (std::size_t i = 0; i + 2 < mesh.triangles.size(); i += 3) {
-        glm::vec3 const a = mesh.positions[mesh.triangles[i]],
-                        b = mesh.positions[mesh.triangles[i + 1]],
-                        c = mesh.positions[mesh.triangles[i + 2]];
+    for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
+        glm::vec3 const a = positions[triangles[i]], b = positions[triangles[i + 1]],
+                        c = positions[triangles[i + 2]];
         // Far from the ray: a sphere around the triangle, with room for rounding.
         glm::dvec3 const middle = (glm::dvec3(a) + glm::dvec3(b) + glm::dvec3(c)) / 3.0,
                          to = middle - o;
@@ -147,7 +195,8 @@ Crossings cross_exactly(RayMesh const& mesh, Ray const& r)
                      C = difference(c, r.origin);
         Exact const u = dot3(direction, cross3(B, C)), v = dot3(direction, cross3(C, A)),
                     w = dot3(direction, cross3(A, B));
-        bool const nu = is_negative(u, b, c), nv = is_negative(v, c, a), nw = is_negative(w, a, b);
+        bool const nu = is_negative(u, direction, b, c), nv = is_negative(v, direction, c, a),
+                   nw = is_negative(w, direction, a, b);
         bool const front = nu && nv && nw, back = !nu && !nv && !nw;
         Exact const volume = u + v + w; // 0: seen edge on
         if ((!front && !back) || volume == 0) continue;
@@ -175,8 +224,13 @@ RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::ui
     if (triangles == 0) throw Error("a mesh without triangles meets no rays");
     RayCheck out;
     if (aim == RayAim::Segments && mesh.targets.empty()) return out;
-    glm::vec3 low = mesh.positions[0], high = low;
-    for (glm::vec3 const& p : mesh.positions) low = min(low, p), high = max(high, p);
+    OwnFrame const frame(mesh.positions);
+    std::vector<glm::vec3> const positions = frame.into(mesh.positions);
+    glm::vec3 low(INFINITY), high(-INFINITY);
+    for (glm::vec3 const& p : positions) {
+        if (!std::isfinite(p.x + p.y + p.z)) throw Error("a point of the mesh is not finite");
+        low = min(low, p), high = max(high, p);
+    }
     float const reach = 2 * glm::length(high - low);
 
     // Around a target the normal of some triangle says where outside is.
@@ -184,7 +238,7 @@ RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::ui
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         triangle_of[mesh.triangles[i]] = std::uint32_t(i / 3);
     auto const corner = [&](std::size_t triangle, std::size_t k) {
-        return mesh.positions[mesh.triangles[3 * triangle + k]];
+        return positions[mesh.triangles[3 * triangle + k]];
     };
     auto const ray = [&](std::uint64_t i) {
         Random random((std::uint64_t(seed) << 40) + i);
@@ -195,7 +249,7 @@ RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::ui
             std::uint32_t const a = mesh.targets[2 * r.aimed_at],
                                 b = mesh.targets[2 * r.aimed_at + 1];
             float const t = 0.1f + 0.8f * random.unit(); // off the vertices
-            r.target = (1 - t) * mesh.positions[a] + t * mesh.positions[b];
+            r.target = (1 - t) * positions[a] + t * positions[b];
             triangle = triangle_of[a];
         } else {
             r.aimed_at = std::uint32_t(triangle);
@@ -222,7 +276,7 @@ RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::ui
         return r;
     };
 
-    std::optional<Scene> scene(std::in_place, mesh.positions, mesh.triangles);
+    std::optional<Scene> scene(std::in_place, positions, mesh.triangles);
     constexpr std::uint64_t kPiece = 4096;
     struct Piece {
         std::vector<std::uint64_t> misses;
@@ -241,7 +295,7 @@ RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::ui
     out.misses = misses.size();
     scene.reset(); // one tree in memory at a time
     if (!misses.empty() && !mesh.control.empty()) {
-        Scene const control(mesh.control, mesh.triangles);
+        Scene const control(frame.into(mesh.control), mesh.triangles);
         threads.parallel_for(pieces.size(), [&](std::size_t p) {
             for (std::uint64_t i = p * kPiece; i < std::min(rays, (p + 1) * kPiece); ++i)
                 pieces[p].control_misses += !control.meets_front(ray(i));
@@ -249,8 +303,9 @@ RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::ui
         for (Piece const& p : pieces) out.control_misses += p.control_misses;
     }
     std::vector<Crossings> exact(misses.size());
-    threads.parallel_for(misses.size(),
-                         [&](std::size_t k) { exact[k] = cross_exactly(mesh, ray(misses[k])); });
+    threads.parallel_for(misses.size(), [&](std::size_t k) {
+        exact[k] = cross_exactly(positions, mesh.triangles, ray(misses[k]));
+    });
     for (std::size_t k = 0; k < misses.size(); ++k) {
         if (exact[k].balance == 0) {
             int const first = exact[k].first;
@@ -258,9 +313,48 @@ RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::ui
             continue;
         }
         Ray const r = ray(misses[k]);
-        out.confirmed.push_back({r.origin, r.target, r.aimed_at});
+        out.confirmed.push_back({frame.out_of(r.target), r.aimed_at});
     }
     return out;
+}
+
+namespace {
+
+// How the picture sees a mesh.
+struct Sight {
+    double nearest = INFINITY, farthest = -INFINITY; ///< along the view
+    double depth_error = 0;                          ///< of the transform, at `nearest`, relative
+    double error_px = 0;                             ///< the same across, in pixels
+};
+
+// x/w with |x| <= w is off by the errors of both, over w.
+Sight sight_of(std::vector<glm::vec3> const& positions, Camera const& camera, int width, int height)
+{
+    Sight out;
+    glm::dvec3 size(0);
+    glm::dvec3 const eye(camera.eye), backward(camera.backward());
+    for (glm::vec3 const& p : positions) {
+        size = max(size, abs(glm::dvec3(p)));
+        double const away = dot(eye - glm::dvec3(p), backward);
+        out.nearest = std::min(out.nearest, away);
+        out.farthest = std::max(out.farthest, away);
+    }
+    double const aspect = double(width) / height,
+                 w = clip_rounding(camera.backward(), camera.eye, size),
+                 x = camera.focal / aspect * clip_rounding(camera.right(), camera.eye, size),
+                 y = camera.focal * clip_rounding(camera.true_up(), camera.eye, size);
+    out.depth_error = w / out.nearest;
+    out.error_px = std::max((x + w) * width, (y + w) * height) / (2 * out.nearest);
+    return out;
+}
+
+} // namespace
+
+// A row's constant is a dot product with the eye times a scale, four roundings; a clip coordinate
+// has a product and three sums more.
+double clip_rounding(glm::vec3 axis, glm::vec3 eye, glm::dvec3 size)
+{
+    return 8 * 0x1p-24 * dot(abs(glm::dvec3(axis)), size + abs(glm::dvec3(eye)));
 }
 
 VisibilityCheck check_visibility(RayMesh const& mesh,
@@ -268,7 +362,20 @@ VisibilityCheck check_visibility(RayMesh const& mesh,
                                  std::vector<std::int64_t> const& seen, Camera const& camera,
                                  int width, int height, ThreadPool const& threads)
 {
-    Scene const scene(mesh.positions, mesh.triangles);
+    VisibilityCheck all;
+    Sight const sight = sight_of(mesh.positions, camera, width, height);
+    if (!(sight.nearest >= camera.near_plane && sight.farthest <= camera.far_plane))
+        all.skipped = "the near or far plane cuts the surface, or it lies behind the eye";
+    else if (!(sight.error_px <= 0.5))
+        all.skipped = "so far from the origin single precision places points to " +
+                      std::to_string(sight.error_px) + " pixels";
+    if (!all.skipped.empty()) return all;
+    // The raster rounds vertices to 1/256 pixel.
+    float const around = 1.0f / 64 + float(sight.error_px),
+                as_far = 1.0001f + 2 * float(sight.depth_error);
+    OwnFrame const frame(mesh.positions);
+    Scene const scene(frame.into(mesh.positions), mesh.triangles);
+    glm::vec3 const eye = frame.into(camera.eye);
     float const aspect = float(width) / float(height);
     glm::vec3 const right = camera.right() * (aspect / camera.focal),
                     up = camera.true_up() / camera.focal, forward = -camera.backward();
@@ -276,16 +383,16 @@ VisibilityCheck check_visibility(RayMesh const& mesh,
         return forward + (2 * x / float(width) - 1) * right + (1 - 2 * y / float(height)) * up;
     };
     auto const face_at = [&](glm::vec3 d) -> std::int64_t {
-        std::int64_t const t = scene.first_hit(camera.eye, d, 0).first;
+        std::int64_t const t = scene.first_hit(eye, d, 0).first;
         return t < 0 ? -1 : std::int64_t(face_of_triangle[std::size_t(t)]);
     };
     // Is the raster's face as far away as the first hit?
     auto const is_as_far = [&](glm::vec3 d, std::int64_t face) {
-        auto [t, first] = scene.first_hit(camera.eye, d, 0);
+        auto [t, first] = scene.first_hit(eye, d, 0);
         float at = first;
-        for (int k = 0; k < 8 && t >= 0 && at <= first * 1.0001f; ++k) {
+        for (int k = 0; k < 8 && t >= 0 && at <= first * as_far; ++k) {
             if (std::int64_t(face_of_triangle[std::size_t(t)]) == face) return true;
-            std::tie(t, at) = scene.first_hit(camera.eye, d, at * (1 + 0x1p-22f));
+            std::tie(t, at) = scene.first_hit(eye, d, at * (1 + 0x1p-22f));
         }
         return false;
     };
@@ -301,10 +408,11 @@ VisibilityCheck check_visibility(RayMesh const& mesh,
             ++out.pixels;
             if (raster == ray) continue;
             bool beside = false;
-            constexpr int kAround = 8; // steps of 1/512 pixel to each side
+            constexpr int kAround = 8; // steps to each side
             for (int k = -kAround; k <= kAround && !beside; ++k)
                 for (int l = -kAround; l <= kAround && !beside; ++l)
-                    beside = face_at(direction(x + float(l) / 512, y + float(k) / 512)) == raster;
+                    beside = face_at(direction(x + around * float(l) / kAround,
+                                               y + around * float(k) / kAround)) == raster;
             if (beside)
                 ++(raster < 0 || ray < 0 ? out.silhouettes : out.edges);
             else if (raster >= 0 && is_as_far(direction(x, y), raster))
@@ -313,7 +421,6 @@ VisibilityCheck check_visibility(RayMesh const& mesh,
                 out.unexplained.push_back({i, int(row)});
         }
     });
-    VisibilityCheck all;
     for (VisibilityCheck const& r : rows) {
         all.pixels += r.pixels, all.edges += r.edges, all.silhouettes += r.silhouettes;
         all.depths += r.depths;

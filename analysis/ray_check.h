@@ -3,9 +3,13 @@
 // A ray from outside must meet a front before any back. Embree's own answers are not exact: it
 // loses rays that pass close to vertices, in robust mode too. So each ray that seems to slip
 // through is traced again over all triangles in 113-bit arithmetic, whose decisions at an edge are
-// the same for both of its triangles. Through a closed surface as many fronts as backs are crossed
-// on the whole way: where they do not balance the ray found a hole. Where they do, Embree lost a
-// hit, or the surface is folded over itself and shows its inside.
+// the same for both of its triangles, and at a vertex for all of them. Through a closed surface as
+// many fronts as backs are crossed on the whole way: where they do not balance the ray found a
+// hole. Where they do, Embree lost a hit, or the surface is folded over itself and shows its
+// inside.
+//
+// Rays run in the mesh's own frame, near the origin and of a size near 1, to which its floats are
+// moved without rounding: so neither where it lies nor how large it is makes a difference.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -17,6 +21,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace tessemu {
@@ -38,7 +43,7 @@ enum class RayAim {
 };
 
 struct RayMiss {
-    glm::vec3 origin, target;
+    glm::vec3 target;       ///< where the mesh lies
     std::uint32_t triangle; ///< or target segment that was aimed at
 };
 
@@ -54,15 +59,23 @@ struct RayCheck {
 };
 
 /// \param rays  at random, entering at 17 degrees from grazing at least. Throws Error for a mesh
-///              without triangles. \cost about a second a million, and a pass over the triangles
-///              for each miss
+///              without triangles, or with a point that is not finite.
+/// \cost  about a second a million, and a pass over the triangles for each miss
 RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::uint32_t seed,
                     ThreadPool const& threads);
 
+/// By how much the view's transform, in floats, may be off at most in dot(axis, p - eye) for points
+/// whose coordinates are up to `size`. A clip coordinate is that times a scale.
+double clip_rounding(glm::vec3 axis, glm::vec3 eye, glm::dvec3 size);
+
 /// A picture's visible triangles against Embree's first hits, pixel by pixel.
 struct VisibilityCheck {
+    /// Why nothing is compared: the near or far plane cuts the surface, or single precision places
+    /// its points too coarsely in the picture. Empty: all is.
+    std::string skipped;
     std::uint64_t pixels = 0;      ///< that either of them sees the surface in
-    std::uint64_t edges = 0;       ///< differ where another face lies within 1/64 pixel
+    std::uint64_t edges = 0;       ///< differ where another face lies within 1/64 pixel and the
+                                   ///< rounding of the transform
     std::uint64_t silhouettes = 0; ///< differ where the background does
     std::uint64_t depths = 0;      ///< differ where both faces are as far away, to 1e-4
     std::vector<std::array<int, 2>> unexplained;

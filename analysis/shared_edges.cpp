@@ -3,6 +3,10 @@
 
 #include "shaders_cpp/domain_edges.h"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
 #include <algorithm>
 #include <bit>
 
@@ -24,27 +28,44 @@ std::size_t SharedEdges::Hash::operator()(MeshPoint const& p) const
 
 SharedEdges::SharedEdges(PatchMesh const& patches, FrameSettings const& frame, bool keep_triangles,
                          ThreadPool const& threads)
-    : mesh_(patches.mesh().base())
+    : mesh_(patches.mesh().base()),
+      eye_(frame.camera.eye),
+      backward_(frame.camera.backward())
 {
     visit_surface(patches, frame, threads,
                   [&](SurfacePatch const& patch) { add(patch, keep_triangles); });
 }
 
-std::size_t SharedEdges::open_edges() const
+std::size_t SharedEdges::count_pieces(std::size_t least, std::size_t most) const
 {
-    std::size_t open = 0;
+    std::size_t pieces = 0;
     for (auto const& [name, line] : lines_) {
         std::vector<std::uint32_t> ends;
         for (Interval const& i : line.intervals) ends.insert(ends.end(), {i.low, i.high});
         std::sort(ends.begin(), ends.end());
         ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-        for (std::size_t k = 0; k + 1 < ends.size(); ++k)
-            open +=
+        for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+            auto const patches = std::size_t(
                 std::count_if(line.intervals.begin(), line.intervals.end(), [&](Interval const& i) {
                     return i.low <= ends[k] && i.high >= ends[k + 1];
-                }) == 1;
+                }));
+            pieces += least <= patches && patches <= most;
+        }
     }
-    return open;
+    return pieces;
+}
+
+void SharedEdges::extend(glm::vec3 position)
+{
+    if (!glm::all(glm::equal(position - position, glm::vec3(0)))) { // not of infinities and NaN
+        extent_.finite = false;
+        return;
+    }
+    extent_.low = glm::min(extent_.low, position);
+    extent_.high = glm::max(extent_.high, position);
+    double const away = glm::dot(eye_ - glm::dvec3(position), backward_);
+    extent_.nearest = std::min(extent_.nearest, away);
+    extent_.farthest = std::max(extent_.farthest, away);
 }
 
 SharedEdges::Outline SharedEdges::outline_of(TessellatedPatch const& t)
@@ -78,6 +99,7 @@ void SharedEdges::add(SurfacePatch const& patch, bool keep_triangles)
     TessellatedPatch const& tess = patch.domain().patch;
     Outline& outline = outlines_[tess.indices];
     if (outline.on.empty()) outline = outline_of(tess);
+    for (std::size_t i = 0; i < tess.points(); ++i) extend(patch.vertex(i).position);
     std::size_t const first_point = rays_.positions.size();
     if (keep_triangles) {
         auto const first = std::uint32_t(first_point);

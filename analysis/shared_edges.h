@@ -6,6 +6,7 @@
 #include "analysis/ray_check.h"
 #include "pipeline/frame.h"
 
+#include <cmath>
 #include <map>
 #include <unordered_map>
 
@@ -50,8 +51,18 @@ public:
     };
     std::map<MeshLine, Line> const& lines() const { return lines_; }
     std::uint32_t face_of_patch(std::uint32_t patch) const { return face_of_patch_[patch]; }
-    /// Pieces of lines that one patch alone has.
-    std::size_t open_edges() const;
+    /// Pieces of lines that one patch alone has, and that several have.
+    std::size_t open_edges() const { return count_pieces(1, 1); }
+    std::size_t shared_edges() const { return count_pieces(2, std::size_t(-1)); }
+
+    /// What all points have, as far as they are numbers: the box that they fill, and their distance
+    /// from the eye along the view.
+    struct Extent {
+        glm::vec3 low{INFINITY}, high{-INFINITY};
+        double nearest = INFINITY, farthest = -INFINITY;
+        bool finite = true; ///< none is infinite or no number
+    };
+    Extent const& extent() const { return extent_; }
 
     RayMesh const& rays() const { return rays_; }
     std::vector<std::uint32_t> const& face_of_triangle() const { return face_of_triangle_; }
@@ -67,13 +78,17 @@ private:
     };
     static Outline outline_of(TessellatedPatch const& patch);
 
+    std::size_t count_pieces(std::size_t least, std::size_t most) const;
     void add(SurfacePatch const& patch, bool keep_triangles);
+    void extend(glm::vec3 position);
     /// Gives the point as the first patch has it.
     glm::vec3 record(MeshPoint const& point, SeenPoint const& seen);
 
     ControlMesh const& mesh_;
+    glm::dvec3 eye_, backward_;
     Points points_;
     std::map<MeshLine, Line> lines_;
+    Extent extent_;
     std::vector<std::uint32_t> face_of_patch_;
     std::map<std::vector<std::uint32_t>, Outline> outlines_; // by a pattern's indices
     RayMesh rays_;

@@ -3,9 +3,14 @@
 
 #include "analysis/moved_points.h"
 #include "analysis/shared_edges.h"
+#include "pipeline/mesh/join.h"
 #include "shaders_cpp/pixel/id_view.h"
 
+#include <glm/common.hpp>
+
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstdio>
 
 namespace tessemu {
@@ -56,7 +61,9 @@ public:
           s_(settings),
           threads_(threads),
           surface_(patches, settings.frame, settings.rays > 0, threads),
-          open_edges_(surface_.open_edges())
+          open_edges_(surface_.open_edges()),
+          shared_edges_(surface_.shared_edges()),
+          seams_(find_seams(patches.mesh().base_topology()))
     {
         for (auto const& [point, seen] : surface_.points()) order_.push_back(&point);
         std::sort(order_.begin(), order_.end(),
@@ -88,13 +95,47 @@ private:
         if (v.sites.size() < s_.list) v.sites.push_back(std::move(site));
     }
 
+    static std::string both(std::string const& a, std::string const& b)
+    {
+        return a.empty() || b.empty() ? a + b : a + "; " + b;
+    }
+    static std::string counted(std::size_t n, char const* one, char const* many)
+    {
+        return n == 1 ? std::string("1 ") + one : std::to_string(n) + " " + many;
+    }
+
+    // Edges of the file that look shared and are not.
+    std::string seams() const
+    {
+        if (seams_.edges == 0) return "";
+        return counted(seams_.edges, "open edge of the mesh lies", "open edges of the mesh lie") +
+               " on others with other vertices";
+    }
     std::string not_compared() const
     {
         std::uint32_t const n = mesh_.cut_edges;
-        return n == 0   ? ""
-               : n == 1 ? "1 cut edge is not compared"
-                        : std::to_string(n) + " cut edges are not compared";
+        return both(n ? counted(n, "cut edge is not compared", "cut edges are not compared") : "",
+                    seams());
     }
+    std::string is_open() const
+    {
+        return both("the surface is open: " +
+                        counted(open_edges_, "edge has one patch", "edges have one patch"),
+                    seams());
+    }
+
+    static void skip(CheckedVerdict& v, std::string reason)
+    {
+        v.verdict = Verdict::Skipped;
+        v.reason = std::move(reason);
+    }
+    // Nothing passes where nothing was checked.
+    CheckedVerdict settled(CheckedVerdict v, std::string const& nothing) const
+    {
+        if (v.verdict == Verdict::Pass && v.checked == 0) skip(v, both(nothing, v.reason));
+        return v;
+    }
+    std::string nothing_shared() const { return "no two patches share an edge"; }
 
     // A point inside two patches' edges must be a point of both: otherwise one passes it by.
     CheckedVerdict topology() const
@@ -129,18 +170,47 @@ private:
                 }
             }
         }
-        return v;
+        return settled(std::move(v), shared_edges_ == 0
+                                         ? nothing_shared()
+                                         : "no point lies inside a shared edge: with more segments "
+                                           "some would");
+    }
+
+    // Values that say something: numbers, and of a normal not all 0.
+    static bool is_defined(SeenPoint const& s, std::size_t first)
+    {
+        bool zero = true;
+        for (std::size_t c = first; c < first + 3; ++c) {
+            if (!std::isfinite(std::bit_cast<float>(s.bits[c]))) return false;
+            zero = zero && std::bit_cast<float>(s.bits[c]) == 0;
+        }
+        return first != SeenPoint::kNormal || !zero;
     }
 
     CheckedVerdict equal_bits(char const* name, std::size_t first) const
     {
         CheckedVerdict v{name, Verdict::Pass, not_compared(), 0, 0, {}};
+        std::size_t undefined = 0;
         for (MeshPoint const* p : order_) {
             std::vector<SeenPoint> const& seen = surface_.points().at(*p);
             int patches = 0;
             for (SeenPoint const& s : seen) patches += s.patches;
             if (patches < 2) continue;
+            bool const defined = std::any_of(
+                seen.begin(), seen.end(), [&](SeenPoint const& s) { return is_defined(s, first); });
+            // That no patch has a normal is no agreement on one, and no crack.
+            if (!defined && first == SeenPoint::kNormal) {
+                ++undefined;
+                continue;
+            }
             ++v.checked;
+            if (!defined) {
+                CrackSite site;
+                set_place(site, mesh_, *p, seen.front().face, seen.back().face);
+                site.text += ": it is not finite";
+                add(v, site);
+                continue;
+            }
             for (std::size_t i = 1; i < seen.size(); ++i) {
                 std::size_t c = first;
                 while (c < first + 3 && seen[i].bits[c] == seen[0].bits[c]) ++c;
@@ -158,7 +228,11 @@ private:
                 break; // one failure a place
             }
         }
-        return v;
+        if (undefined)
+            v.reason =
+                both(v.reason, counted(undefined, "point has a normal", "points have a normal") +
+                                   " of length 0, or none, in all patches: left out");
+        return settled(std::move(v), undefined ? "" : nothing_shared());
     }
 
     CheckedVerdict displaced() const
@@ -171,9 +245,15 @@ private:
     {
         CheckedVerdict v{"coverage", Verdict::Pass, "", 0, 0, {}};
         if (open_edges_) {
-            v.verdict = Verdict::Skipped;
-            v.reason =
-                "the surface is open: " + std::to_string(open_edges_) + " edges have one patch";
+            skip(v, is_open());
+            return v;
+        }
+        // What is behind the eye is cut off, and what it balances is not. The near plane cuts
+        // nothing here.
+        if (surface_.extent().nearest < INFINITY && !lies_before_the_eye()) {
+            skip(v,
+                 "the eye is inside the surface, or some of it is behind the eye, where it is cut "
+                 "off");
             return v;
         }
         count_hits(patches_, seen_surface(s_.frame), s_.frame.width, s_.frame.height, "", v);
@@ -183,7 +263,16 @@ private:
         half_pixels.lattice = kLattice;
         count_hits(MovedPoints(patches_, half_pixels), rounded, kLattice, kLattice,
                    ", vertices rounded to half pixels", v);
-        return v;
+        return settled(std::move(v), "no sample was covered");
+    }
+
+    // Of w, which is rounded.
+    bool lies_before_the_eye() const
+    {
+        SharedEdges::Extent const& e = surface_.extent();
+        Camera const& camera = s_.frame.camera;
+        glm::dvec3 const size = glm::max(glm::abs(glm::dvec3(e.low)), glm::abs(glm::dvec3(e.high)));
+        return e.nearest > clip_rounding(camera.backward(), camera.eye, size);
     }
 
     void count_hits(PatchMesh const& patches, SurfaceSettings const& surface, int width, int height,
@@ -221,8 +310,12 @@ private:
             return v;
         }
         if (open_edges_) {
-            v.reason =
-                "the surface is open: " + std::to_string(open_edges_) + " edges have one patch";
+            v.reason = is_open();
+            return v;
+        }
+        SharedEdges::Extent const& extent = surface_.extent();
+        if (!extent.finite || surface_.rays().triangles.empty() || extent.low == extent.high) {
+            v.reason = !extent.finite ? "not all points are finite" : "the surface has no extent";
             return v;
         }
         v.verdict = Verdict::Pass;
@@ -263,19 +356,23 @@ private:
                             ": the picture and Embree's first hit show other patches";
                 add(v, site);
             }
-            pictures = "; of " + std::to_string(c.pixels) + " pixels " +
-                       std::to_string(c.edges + c.silhouettes + c.depths + c.unexplained.size()) +
-                       " show another patch: " + std::to_string(c.edges) + " beside an edge, " +
-                       std::to_string(c.silhouettes) + " at a silhouette, " +
-                       std::to_string(c.depths) + " at equal depth, " +
-                       std::to_string(c.unexplained.size()) + " unexplained";
+            pictures = !c.skipped.empty()
+                           ? "; no picture is compared: " + c.skipped
+                           : "; of " + std::to_string(c.pixels) + " pixels " +
+                                 std::to_string(c.edges + c.silhouettes + c.depths +
+                                                c.unexplained.size()) +
+                                 " show another patch: " + std::to_string(c.edges) +
+                                 " beside an edge, " + std::to_string(c.silhouettes) +
+                                 " at a silhouette, " + std::to_string(c.depths) +
+                                 " at equal depth, " + std::to_string(c.unexplained.size()) +
+                                 " unexplained";
         }
         v.reason = "Embree missed " + std::to_string(refuted + folds + past + confirmed) +
                    " rays: " + std::to_string(refuted) + " hit in 113-bit arithmetic, " +
                    std::to_string(folds) + " meet a fold that is closed, " + std::to_string(past) +
                    " pass the outline by a rounding; " + std::to_string(control) +
                    " missed on a control with equal edges" + pictures;
-        return v;
+        return settled(std::move(v), "no ray was cast");
     }
 
     /// The face that each pixel shows, -1 for none.
@@ -312,7 +409,8 @@ private:
     WatertightSettings const& s_;
     ThreadPool const& threads_;
     SharedEdges surface_;
-    std::size_t open_edges_;
+    std::size_t open_edges_, shared_edges_;
+    Seams seams_;
     std::vector<MeshPoint const*> order_;
 };
 
@@ -329,6 +427,12 @@ bool all_hold(std::vector<CheckedVerdict> const& verdicts)
 {
     return std::none_of(verdicts.begin(), verdicts.end(),
                         [](CheckedVerdict const& v) { return v.verdict == Verdict::Fail; });
+}
+
+bool any_checked(std::vector<CheckedVerdict> const& verdicts)
+{
+    return std::any_of(verdicts.begin(), verdicts.end(),
+                       [](CheckedVerdict const& v) { return v.verdict != Verdict::Skipped; });
 }
 
 ColorTarget draw_cracks(PatchMesh const& patches, WatertightSettings const& settings,

@@ -10,7 +10,8 @@
 //   raycast    rays from outside meet a front first; Embree traces, 113-bit arithmetic decides; and
 //              the picture shows the patches that Embree sees, or a reason why not
 //
-// A verdict that does not apply is skipped, with the reason. docs/watertight.md explains.
+// A verdict that does not apply, or that found nothing to check, is skipped, with the reason; none
+// passes on nothing. docs/watertight.md explains.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -66,6 +67,8 @@ std::vector<CheckedVerdict> check_watertight(PatchMesh const& patches,
 
 /// False if any verdict fails.
 bool all_hold(std::vector<CheckedVerdict> const& verdicts);
+/// False if all verdicts are skipped.
+bool any_checked(std::vector<CheckedVerdict> const& verdicts);
 
 /// The lit picture with every listed site in red.
 ColorTarget draw_cracks(PatchMesh const& patches, WatertightSettings const& settings,

@@ -6,6 +6,7 @@
 #include "cli/job.h"
 #include "cli/verbs.h"
 #include "io/image_writer.h"
+#include "pipeline/mesh/join.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +20,8 @@ struct CheckRequest {
     RunRequest run;
     std::string output;
     Mistake mistake = Mistake::None;
-    std::int64_t mistaken_face = 0; ///< counted from 1; 0: the first that shares all edges
+    std::optional<std::int64_t> mistaken_face; ///< of the file, counted from 1; none: the first
+                                               ///< that shares all edges
     double parity = 0;
     std::int64_t rays = 0;
 };
@@ -36,13 +38,28 @@ Mistake parse_mistake(std::string const& text, std::string const& option)
 PlantedMistake mistake_of(CheckRequest const& o, RefinedMesh const& mesh)
 {
     PlantedMistake out = plant_mistake(mesh, o.mistake);
-    if (o.mistaken_face == 0) return out;
-    std::size_t const faces = mesh.base().faces();
-    if (std::size_t(o.mistaken_face) > faces)
-        throw Error(
-            fmt::format("--break-face is {}, the mesh has {} faces", o.mistaken_face, faces));
-    out.face = std::uint32_t(o.mistaken_face - 1);
-    return out;
+    if (!o.mistaken_face) return out;
+    ControlMesh const& base = mesh.base();
+    for (std::uint32_t f = 0; f < base.faces(); ++f)
+        if (std::int64_t(base.file_face(f)) + 1 == *o.mistaken_face) {
+            out.face = f;
+            return out;
+        }
+    std::uint32_t const last = base.file_face(std::uint32_t(base.faces() - 1)) + 1;
+    throw Error(fmt::format(
+        "--break-face is {}, it must be 1 to {}{}: the mesh has {} faces", *o.mistaken_face, last,
+        last == base.faces() ? "" : " and a face that was not left out", base.faces()));
+}
+
+// How to close a surface that looks closed and is not.
+std::string join_hint(Seams const& seams)
+{
+    if (seams.edges == 0) return "";
+    // Two digits that are no less.
+    std::string const apart = seams.apart > 0 ? fmt::format("{:.1e}", 1.06 * seams.apart) : "0";
+    return fmt::format("{} open edges lie on others with other vertices: --join DISTANCE joins "
+                       "them, here --join {} or more",
+                       seams.edges, apart);
 }
 
 VerdictRow row_of(CheckedVerdict const& v)
@@ -73,6 +90,8 @@ int run(CheckRequest const& o)
     if (picture) picture_format(*picture); // or refuses
     Job job = prepare(o.surface, "check");
     set_picture(job, o.picture, o.surface);
+    std::string const hint = join_hint(find_seams(job.surface.mesh->base_topology()));
+    if (!hint.empty()) job.header.warnings.push_back(hint);
     WatertightSettings s;
     s.frame = job.frame;
     s.parity = float(o.parity);
@@ -90,7 +109,9 @@ int run(CheckRequest const& o)
     c.emplace_back("rays", o.rays);
     c.emplace_back("parity", double(s.parity));
     c.emplace_back("break", std::string(name_of(o.mistake)));
-    if (mistaken) c.emplace_back("break_face", std::int64_t(mistake.face) + 1);
+    if (mistaken)
+        c.emplace_back("break_face",
+                       std::int64_t(job.surface.mesh->base().file_face(mistake.face)) + 1);
     ThreadPool const threads(o.run.threads);
     ProgressBar bar;
     s.progress = [&](std::size_t n, std::size_t all) { bar(n, all); };
@@ -102,7 +123,15 @@ int run(CheckRequest const& o)
     for (CheckedVerdict const& v : verdicts) rows.push_back(row_of(v));
     if (picture) write_image(draw_cracks(patches, s, verdicts, threads), *picture);
     out.finish([&] { return check_report(job.header, rows); }, check_table(rows, 3));
-    return all_hold(verdicts) ? 0 : 1;
+    if (!hint.empty() && any_checked(verdicts)) print_warnings({hint}); // else an error says so
+    if (!all_hold(verdicts)) return 1;
+    std::string const& model = o.surface.model.model;
+    if (std::string const why = why_not_found(o.mistake, verdicts); !why.empty())
+        throw Error(model + ": " + why);
+    if (!any_checked(verdicts))
+        throw Error(fmt::format("{}: nothing was checked: {}", model,
+                                hint.empty() ? verdicts.front().reason : hint));
+    return 0;
 }
 
 } // namespace
@@ -112,7 +141,8 @@ void add_check(CommandLine& program)
     auto const o = std::make_shared<CheckRequest>();
     Verb& verb = program.add_verb(
         "check",
-        "is the surface closed? Verdicts on edges, coverage and rays; exit status 1 if one fails",
+        "is the surface closed? Verdicts on edges, coverage and rays; exit status 1 if one fails, "
+        "2 if all are skipped or a planted mistake is not found",
         "  tessemu check golem\n"
         "  tessemu check cage.obj --tess 7.3 --contraction mixed:5 --displace studs\n"
         "  tessemu check golem --break order --parity 0.02 -o cracks.png --json cracks.json");
@@ -121,8 +151,9 @@ void add_check(CommandLine& program)
                 "plant a known mistake: order, contraction, factors, normals, fold, weights, "
                 "topleft",
                 "none");
-    verb.option("--break-face", o->mistaken_face, whole<std::int64_t>(0, std::int64_t(1) << 32),
-                "whose patch has it, where it is one patch's [the first that shares all edges]");
+    verb.option("--break-face", o->mistaken_face, whole<std::int64_t>(INT64_MIN, INT64_MAX),
+                "the file's face whose patch has it, where it is one patch's [the first that "
+                "shares all edges]");
     verb.option("--parity", o->parity, finite_number,
                 "move every point by so much along its normal, out or in by the parity of its "
                 "bits: cracks of one ulp open",

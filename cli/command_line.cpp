@@ -6,9 +6,25 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <charconv>
 #include <sstream>
 
 namespace tessemu {
+
+namespace {
+
+// CLI11 takes -1 for a number and -inf and -.5 for options. They reach it behind this sign.
+constexpr char kNumber = '\x01';
+
+std::string marked(std::string const& word)
+{
+    double x = 0;
+    auto const [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
+    bool const number = error == std::errc() && end == word.data() + word.size();
+    return number && word.starts_with('-') ? kNumber + word : word;
+}
+
+} // namespace
 
 struct Verb::Option {
     Syntax syntax;
@@ -28,7 +44,14 @@ void Verb::add(Syntax syntax, Set set)
     // The callback that takes text as it is: CLI11's conversion to strings gives [a,b] and {} a
     // meaning.
     CLI::Option* const option = app_.add_option(
-        s.name, [&o](CLI::results_t const& texts) { return o.texts = texts, true; }, s.about);
+        s.name,
+        [&o](CLI::results_t texts) {
+            for (std::string& t : texts)
+                if (t.starts_with(kNumber)) t.erase(0, 1);
+            o.texts = std::move(texts);
+            return true;
+        },
+        s.about);
     option->type_name(s.type);
     if (s.values != Values::One) option->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     if (s.values == Values::Many) option->expected(1, -1)->allow_extra_args();
@@ -112,7 +135,9 @@ int CommandLine::parse_and_work(int argc, char const* const* argv)
                 return 2;
             }
     try {
-        app_->parse(argc, argv);
+        std::vector<std::string> words; // CLI11 takes them from the last to the first
+        for (int i = argc - 1; i > 0; --i) words.push_back(marked(argv[i]));
+        app_->parse(std::move(words));
     } catch (CLI::ParseError const& e) {
         if (e.get_exit_code() == 0) {
             std::ostringstream text;
@@ -125,7 +150,9 @@ int CommandLine::parse_and_work(int argc, char const* const* argv)
             for (auto const& v : verbs_) verbs += " " + v->app_.get_name();
             throw Error(fmt::format("'{}' is not a verb; there are{}", argv[1], verbs));
         }
-        throw;
+        std::string what = e.what();
+        std::erase(what, kNumber);
+        throw Error(what);
     }
     for (auto const& v : verbs_)
         if (v->app_.parsed()) return v->parse_and_work();

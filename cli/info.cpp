@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/job.h"
 #include "cli/verbs.h"
+#include "pipeline/mesh/join.h"
 #include "pipeline/mesh/manifold.h"
 
 #include <fmt/format.h>
@@ -31,11 +32,17 @@ int run(InfoRequest const& o)
     MeshSummary summary;
     try {
         MeshRepairs repairs;
+        if (auto const& distance = o.model.build.join) {
+            JoinedMesh joined = join_vertices(std::move(model.mesh), *distance);
+            model.mesh = std::move(joined.mesh);
+            more = in_words(joined.join, *distance);
+        }
         if (!o.model.build.strict) {
             ManifoldMesh manifold = make_manifold(std::move(model.mesh));
             model.mesh = std::move(manifold.mesh);
             repairs = manifold.repairs;
-            more = in_words(repairs);
+            std::vector<std::string> const lines = in_words(repairs);
+            more.insert(more.end(), lines.begin(), lines.end());
         }
         summary = summarize(Topology(model.mesh));
         summary.vertices += repairs.unused.number;

@@ -53,6 +53,7 @@ Config config_of(ModelRequest const& o, Parameters const& parameters)
 {
     SchemeInfo const info = o.scheme->info();
     Config out{{"scheme", info.name}, {"subdivide", std::int64_t(o.build.subdivide)}};
+    if (o.build.join) out.emplace_back("join", *o.build.join);
     for (SchemeParameter const& p : info.parameters)
         std::visit([&](auto const& value) { out.emplace_back(p.name, value); },
                    parameters.values().at(p.name));

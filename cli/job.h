@@ -60,7 +60,7 @@ struct Job {
 using MakeSurface = SchemeOnMesh(Scheme const&, ControlMesh, BuildOptions const&);
 /// Errors about the mesh name the file, and the line where it is known.
 SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make = build_scheme);
-/// "scheme", "subdivide" and each parameter by its name.
+/// "scheme", "subdivide", "join" where it is asked for, and each parameter by its name.
 Config config_of(ModelRequest const& o, Parameters const& parameters);
 /// The model and its settings for shading. Prints warnings.
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb);

@@ -132,6 +132,13 @@ double parse_finite(std::string const& text, std::string const& option)
     return x;
 }
 
+double parse_distance(std::string const& text, std::string const& option)
+{
+    double const x = finite_number(text, option);
+    if (x < 0) throw Error(fmt::format("{} is {}, it must be 0 or more", option, text));
+    return x;
+}
+
 PictureSize parse_size(std::string const& text, std::string const& option)
 {
     auto const parts = split(text, 'x');
@@ -215,6 +222,9 @@ void add_options(Verb& verb, ModelRequest& o)
         "steps of Catmull-Clark subdivision of the mesh before the scheme, beyond those that it "
         "asks for, 0 to 6; nothing counts them",
         "0");
+    verb.option("--join", o.build.join, parse_distance,
+                "join vertices that lie within this distance of each other, in the file's own unit "
+                "of length; 0 joins equal positions; the lowest number stays");
     verb.flag("--strict", o.build.strict,
               "refuse a mesh that would have to be cut or lose faces, instead of warning");
 }
@@ -274,7 +284,9 @@ void add_options(Verb& verb, RunRequest& o)
 void add_partitioning(Verb& verb, Partitioning& partitioning)
 {
     verb.option("--partitioning", partitioning, parse_partitioning,
-                "integer, pow2, fractional_odd, fractional_even", "fractional_odd");
+                "integer, pow2, fractional_odd, fractional_even; pow2 acts as integer, and 5 stays "
+                "5: rounding to powers of two is the hull shader's part (R59)",
+                "fractional_odd");
 }
 
 void add_vertex_cache(Verb& verb, SurfaceRequest& o)

@@ -11,7 +11,7 @@
 
 namespace tessemu {
 
-/// MODEL, --scheme, --set, --subdivide
+/// MODEL, --scheme, --set, --subdivide, --join, --strict
 struct ModelRequest {
     std::string model; ///< a path, or a built-in's name
     Scheme const* scheme = nullptr;

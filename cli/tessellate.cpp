@@ -8,14 +8,13 @@
 
 #include <fmt/format.h>
 
-#include <sstream>
-
 namespace tessemu {
 
 namespace {
 
 struct TessellateRequest {
     TessellatorState state;
+    std::optional<OutputPrimitive> output_primitive; ///< by default what the domain has
     std::vector<double> factors;
     std::string batch; ///< a file of cases instead; "-": standard input
     std::string output;
@@ -26,12 +25,18 @@ int run_batch(TessellateRequest const& o)
     RunOutput result(o.output.empty() ? "-" : o.output);
     std::string const text = o.batch == "-" ? read_file("/dev/stdin") : read_file(o.batch);
     std::string out;
-    int line = 0;
-    std::istringstream in(text);
-    for (std::string row; std::getline(in, row);) {
-        TessellatorCase const c = parse_tessellator_case(row, o.batch, ++line);
+    std::size_t line = 0, illegal = 0, first = 0;
+    for (TessellatorCase const& c : parse_tessellator_cases(text, o.batch)) {
+        ++line;
+        if (!is_legal_output(c.state) && illegal++ == 0) first = line;
         out += tessellator_answer(run_tessellator_case(c)) + "\n";
     }
+    if (illegal)
+        print_warnings({fmt::format(
+            "{}:{}: Direct3D 11 has no such output in this domain (rule R75){}: answered as the "
+            "reference tessellator does",
+            o.batch, first,
+            illegal > 1 ? fmt::format(", and in {} cases more", illegal - 1) : "")});
     result.finish([&] { return out; }, "");
     return 0;
 }
@@ -41,6 +46,15 @@ int run(TessellateRequest const& o)
     if (!o.batch.empty()) return run_batch(o);
     RunOutput result(o.output.empty() ? "-" : o.output);
     TessellatorCase c{o.state, {}};
+    bool const isoline = c.state.domain == TessellatorDomain::Isoline;
+    c.state.output =
+        o.output_primitive.value_or(isoline ? OutputPrimitive::Line : OutputPrimitive::TriangleCw);
+    if (!is_legal_output(c.state))
+        throw Error(fmt::format("--output is {}, in the domain {} it must be point or {}: lines "
+                                "come from isolines and triangles from quad and tri domains (rule "
+                                "R75)",
+                                name_of(c.state.output), name_of(c.state.domain),
+                                isoline ? "line" : "triangle_cw or triangle_ccw"));
     auto const wanted = std::size_t(tess_factor_count(c.state.domain));
     if (o.factors.size() != wanted)
         throw Error(fmt::format("{} has {} factors, {} are needed", name_of(c.state.domain),
@@ -83,11 +97,12 @@ void add_tessellate(CommandLine& program)
         "  tessemu tessellate --batch cases.txt > answers.txt");
     verb.option("--domain", o->state.domain, one_of_named(kDomains), "quad, tri, isoline", "quad");
     add_partitioning(verb, o->state.partitioning);
-    verb.option("--output", o->state.output, one_of_named(kPrimitives),
-                "point, line, triangle_cw, triangle_ccw", "triangle_cw");
+    verb.option("--output", o->output_primitive, one_of_named(kPrimitives),
+                "point; line, of isolines; triangle_cw, triangle_ccw, of the other domains "
+                "[triangle_cw, isoline: line]");
     verb.list("--factors", o->factors, any_number,
               "quad: edges u=0 v=0 u=1 v=1, inside u v; tri: u=0 v=0 w=0, inside; isoline: "
-              "density, detail");
+              "density, detail; numbers, -inf, inf or nan");
     verb.option("--batch", o->batch, plain, "file of cases, one a line; '-' is standard input");
     for (char const* name : {"--factors", "--domain", "--partitioning", "--output"})
         verb.exclude(name, "--batch"); // whose lines say it

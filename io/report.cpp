@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
+
 namespace tessemu {
 
 using Json = nlohmann::ordered_json;
@@ -59,14 +61,32 @@ std::string as_utf8(std::string_view bytes)
 
 namespace {
 
+// JSON has no infinities and no NaN: they are the strings "inf", "-inf" and "nan".
+Json to_json(double x)
+{
+    if (std::isfinite(x)) return x;
+    return std::isnan(x) ? "nan" : x > 0 ? "inf" : "-inf";
+}
+
+Json to_json(std::vector<double> const& list)
+{
+    Json j = Json::array();
+    for (double x : list) j.push_back(to_json(x));
+    return j;
+}
+
 Json to_json(Config const& config)
 {
     Json j = Json::object();
     for (auto const& entry : config) // no structured binding: clang 14 cannot capture one
         std::visit(
             [&](auto const& value) {
-                if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>)
+                using Value = std::decay_t<decltype(value)>;
+                if constexpr (std::is_same_v<Value, std::string>)
                     j[entry.first] = as_utf8(value);
+                else if constexpr (std::is_same_v<Value, double> ||
+                                   std::is_same_v<Value, std::vector<double>>)
+                    j[entry.first] = to_json(value);
                 else
                     j[entry.first] = value;
             },

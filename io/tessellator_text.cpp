@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <sstream>
@@ -60,6 +61,22 @@ TessellatorCase parse_tessellator_case(std::string_view text, std::string const&
     return c;
 }
 
+std::vector<TessellatorCase> parse_tessellator_cases(std::string_view text, std::string const& file)
+{
+    constexpr std::string_view kBlank = " \t\r\n";
+    text = text.substr(0, text.find_last_not_of(kBlank) + 1);
+    std::vector<TessellatorCase> out;
+    for (int line = 1; !text.empty(); ++line) {
+        std::size_t const end = std::min(text.find('\n'), text.size());
+        std::string_view const row = text.substr(0, end);
+        if (row.find_first_not_of(kBlank) == row.npos)
+            throw FormatError(file, line, "the line is empty, and cases follow");
+        out.push_back(parse_tessellator_case(row, file, line));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return out;
+}
+
 std::string format_tessellator_case(TessellatorCase const& c)
 {
     std::string s = fmt::format("{} {} {}", name_of(c.state.domain), name_of(c.state.partitioning),
@@ -67,6 +84,12 @@ std::string format_tessellator_case(TessellatorCase const& c)
     for (int i = 0; i < tess_factor_count(c.state.domain); ++i)
         s += fmt::format(" {:08x}", std::bit_cast<std::uint32_t>(c.factors[std::size_t(i)]));
     return s;
+}
+
+bool is_legal_output(TessellatorState const& s)
+{
+    bool const isoline = s.domain == TessellatorDomain::Isoline;
+    return s.output == OutputPrimitive::Point || isoline == (s.output == OutputPrimitive::Line);
 }
 
 TessellatedPatch run_tessellator_case(TessellatorCase const& c)

@@ -34,10 +34,10 @@ Kept without_degenerate_faces(ControlMesh const& mesh, MeshRepairs& repairs)
         std::sort(sorted.begin(), sorted.end());
         bool const twice = std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
         if (face.size() < 3 || twice) {
-            repairs.dropped.add(f);
+            repairs.dropped.add(mesh.file_face(f));
             continue;
         }
-        if (face.size() < all.size()) repairs.repeated.add(f);
+        if (face.size() < all.size()) repairs.repeated.add(mesh.file_face(f));
         out.mesh.add_face(face);
         out.faces.push_back(f);
         out.corners.insert(out.corners.end(), corners.begin(), corners.end());
@@ -144,10 +144,10 @@ ManifoldMesh make_manifold(ControlMesh mesh)
     }
     bool split = false;
     for (std::uint32_t v = 0; v < vertices; ++v) {
-        if (!faces_at[v]) repairs.unused.add(v);
-        if (fans_at[v] > 1) repairs.split.add(v), split = true;
+        if (!faces_at[v]) repairs.unused.add(mesh.file_vertex(v));
+        if (fans_at[v] > 1) repairs.split.add(mesh.file_vertex(v)), split = true;
     }
-    for (Edge e : fans.cut) repairs.cut.add(e.a);
+    for (Edge e : fans.cut) repairs.cut.add(mesh.file_vertex(e.a));
     if (kept.faces.size() == mesh.faces() && corners == mesh.face_vertices.size() &&
         !repairs.unused.number && !split && fans.cut.empty()) {
         out.mesh = std::move(mesh);

@@ -46,7 +46,7 @@ struct ControlMesh {
     std::vector<std::uint32_t> holes; ///< faces that shape the surface but are not drawn
     BoundaryRule boundary = BoundaryRule::EdgeAndCorner;
 
-    // What make_manifold has changed: nothing, in a mesh that is as its file has it.
+    // What join_vertices and make_manifold have changed: nothing in a mesh as its file has it.
     std::vector<std::uint32_t> file_vertices, file_faces; ///< numbers in the file, from 0
     std::uint32_t cut_edges = 0;                          ///< of the file, no longer shared
     /// Vertices a < b of an edge that two faces run along and do not share, ascending.

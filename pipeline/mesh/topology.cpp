@@ -7,17 +7,6 @@
 
 namespace tessemu {
 
-namespace {
-std::string vertex_name(std::uint32_t v)
-{
-    return std::to_string(v + 1);
-}
-std::string edge_name(std::uint32_t a, std::uint32_t b)
-{
-    return std::to_string(a + 1) + "-" + std::to_string(b + 1);
-}
-} // namespace
-
 HalfEdge Topology::next(HalfEdge h) const
 {
     std::uint32_t const f = half_edge_face_[h];
@@ -32,6 +21,12 @@ HalfEdge Topology::previous(HalfEdge h) const
 
 Topology::Topology(ControlMesh const& mesh) : mesh_(&mesh)
 {
+    auto const vertex_name = [&](std::uint32_t v) {
+        return std::to_string(mesh.file_vertex(v) + 1);
+    };
+    auto const edge_name = [&](std::uint32_t a, std::uint32_t b) {
+        return vertex_name(a) + "-" + vertex_name(b);
+    };
     auto const corners = std::uint32_t(mesh.face_vertices.size());
     auto const vertices = std::uint32_t(mesh.positions.size());
     half_edge_face_.resize(corners);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/schemes/scheme.h"
 
+#include "pipeline/mesh/join.h"
 #include "pipeline/mesh/manifold.h"
 
 #include <algorithm>
@@ -238,10 +239,16 @@ SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const
         throw LimitError("steps of subdivision", std::uint64_t(options.subdivide), kMost);
     SchemeOnMesh out;
     out.parameters = resolve_parameters(info, options.set);
+    if (options.join) {
+        JoinedMesh joined = join_vertices(std::move(mesh), *options.join);
+        mesh = std::move(joined.mesh);
+        out.warnings = in_words(joined.join, *options.join);
+    }
     if (!options.strict) {
         ManifoldMesh manifold = make_manifold(std::move(mesh));
         mesh = std::move(manifold.mesh);
-        out.warnings = in_words(manifold.repairs);
+        std::vector<std::string> const more = in_words(manifold.repairs);
+        out.warnings.insert(out.warnings.end(), more.begin(), more.end());
     }
     std::size_t polygons = 0, largest = 0;
     for (std::size_t f = 0; f < mesh.faces(); ++f) {

@@ -12,6 +12,7 @@
 
 #include <limits>
 #include <map>
+#include <optional>
 #include <variant>
 
 namespace tessemu {
@@ -98,13 +99,15 @@ struct BuildOptions {
     /// Steps of subdivision beyond those that the scheme asks for, 0 to 6.
     int subdivide = 0;
     ParameterTexts set = {};
+    /// Joins vertices that lie within this distance, in the mesh's units, before all else.
+    std::optional<double> join = {};
     /// Refuses a mesh that would have to be cut, to lose faces, or to be drawn in another way.
     bool strict = false;
 };
 
-/// Makes the mesh a manifold, refines it as options and scheme ask, checks it and builds. Throws
-/// MeshError for a mesh that the scheme does not take, or, if strict, that is no manifold, naming a
-/// face of the given mesh; LimitError; Error.
+/// Joins vertices if asked to, makes the mesh a manifold, refines it as options and scheme ask,
+/// checks it and builds. Throws MeshError for a mesh that the scheme does not take, or, if strict,
+/// that is no manifold, naming a face of the given mesh; LimitError; Error.
 SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options = {});
 /// The mesh alone, refined as for the scheme, whether it takes it or not: `patches` is none.
 SchemeOnMesh refine_for_scheme(Scheme const& scheme, ControlMesh mesh,

@@ -25,8 +25,11 @@ namespace {
 
 class Case {
 public:
-    Case(std::string const& model, std::string const& scheme)
-        : on_(build_scheme(find_scheme(scheme), load_model(model).mesh))
+    Case(std::string const& model, std::string const& scheme) : Case(load_model(model).mesh, scheme)
+    {
+    }
+    Case(ControlMesh cage, std::string const& scheme)
+        : on_(build_scheme(find_scheme(scheme), std::move(cage)))
     {
         settings.frame.width = settings.frame.height = 256;
         settings.frame.tess_factor = 7.3f;
@@ -109,6 +112,195 @@ TEST(Watertight, OpenSurfacesSkipWhatDoesNotApply)
     EXPECT_EQ(v.at("coverage").verdict, Verdict::Skipped);
     EXPECT_EQ(v.at("raycast").verdict, Verdict::Skipped);
     EXPECT_NE(v.at("coverage").reason.find("open"), std::string::npos);
+}
+
+// A box of quads, or of quads with their own vertices.
+ControlMesh box(glm::vec3 low, glm::vec3 high, bool own_vertices = false)
+{
+    static constexpr std::uint32_t kFaces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                                   {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    ControlMesh m;
+    auto const corner = [&](std::uint32_t v) {
+        return glm::vec3(v & 1 ? high.x : low.x, v & 2 ? high.y : low.y, v & 4 ? high.z : low.z);
+    };
+    if (!own_vertices)
+        for (std::uint32_t v = 0; v < 8; ++v) m.positions.push_back(corner(v));
+    for (auto const& f : kFaces) {
+        std::vector<std::uint32_t> face(f, f + 4);
+        if (own_vertices)
+            for (std::uint32_t& v : face) {
+                m.positions.push_back(corner(v));
+                v = std::uint32_t(m.positions.size() - 1);
+            }
+        m.add_face(face);
+    }
+    return m;
+}
+
+TEST(Watertight, NoVerdictPassesOnNothing)
+{
+    Case open(box(glm::vec3(-1), glm::vec3(1), true), "gregory-stencil");
+    open.settings.frame.displacement =
+        std::make_shared<Displacement>(Displacement::studs(0.2f, 0.02f));
+    auto const all = check_watertight(open.patches(), open.settings, ThreadPool());
+    EXPECT_FALSE(any_checked(all));
+    for (CheckedVerdict const& v : all) {
+        EXPECT_EQ(v.verdict, Verdict::Skipped) << v.name;
+        EXPECT_EQ(v.checked, 0u) << v.name;
+        EXPECT_NE(v.reason.find("24 open edges of the mesh lie on others with other vertices"),
+                  std::string::npos)
+            << v.name << ": " << v.reason;
+    }
+    // A factor of 1 puts no point inside an edge, and its corners are checked all the same.
+    Case coarse("golem", "gregory-stencil");
+    coarse.settings.frame.tess_factor = 1;
+    Verdicts const v = coarse.check();
+    EXPECT_EQ(v.at("topology").verdict, Verdict::Skipped);
+    EXPECT_EQ(v.at("position").verdict, Verdict::Pass);
+    expect_clean(v, "factor 1");
+}
+
+TEST(Watertight, CoverageIsSkippedWhereNoSampleIsCovered)
+{
+    Case c(box({-0.01f, -150, -0.01f}, {0.01f, 150, 0.01f}), "gregory-stencil"); // a mast
+    Verdicts const v = c.check();
+    EXPECT_EQ(v.at("coverage").verdict, Verdict::Skipped);
+    EXPECT_EQ(v.at("coverage").reason, "no sample was covered");
+    EXPECT_EQ(v.at("raycast").verdict, Verdict::Pass);
+}
+
+// Behind the eye the surface is cut off, and what is in front of it does not balance.
+TEST(Watertight, CoverageIsSkippedWhereTheEyeIsInsideOrGeometryBehindIt)
+{
+    Case c("golem", "gregory-stencil");
+    Camera& camera = c.settings.frame.camera;
+    glm::vec3 const outside = camera.eye;
+    for (glm::vec3 eye : {glm::vec3(0.1f, 0.2f, 0.1f), glm::vec3(-0.2f, 0.3f, 0)}) {
+        camera.eye = eye;
+        camera.target = {1, 0.3f, 0.5f};
+        fit_depth_range(camera, c.mesh().positions);
+        Verdicts const v = c.check();
+        EXPECT_EQ(v.at("coverage").verdict, Verdict::Skipped);
+        EXPECT_NE(v.at("coverage").reason.find("eye"), std::string::npos);
+        EXPECT_EQ(v.at("raycast").verdict, Verdict::Pass);
+        EXPECT_NE(v.at("raycast").reason.find("no picture is compared"), std::string::npos);
+        EXPECT_TRUE(all_hold(check_watertight(c.patches(), c.settings, ThreadPool())));
+    }
+    camera.eye = outside; // all of it behind: nothing is seen
+    camera.target = 2.0f * outside;
+    EXPECT_EQ(c.check().at("coverage").verdict, Verdict::Skipped);
+    camera.target = {0, 0, 0};
+    // Through the middle of it: that cuts the picture, and coverage is counted without the plane.
+    camera.near_plane = glm::length(outside);
+    Verdicts const cut = c.check();
+    EXPECT_EQ(cut.at("coverage").verdict, Verdict::Pass);
+    EXPECT_EQ(cut.at("raycast").verdict, Verdict::Pass);
+    EXPECT_NE(cut.at("raycast").reason.find("no picture is compared"), std::string::npos);
+}
+
+// Bodies where single precision keeps few bits of their size.
+TEST(Watertight, NothingFailsFarFromTheOrigin)
+{
+    for (float far : {1e4f, 1e5f, 1e6f, 1e7f}) {
+        glm::vec3 const middle(far, -0.7f * far, 0.4f * far);
+        Case c(box(middle - 5.0f, middle + 5.0f), "gregory-stencil");
+        Verdicts const v = c.check();
+        expect_clean(v, std::to_string(far));
+        EXPECT_EQ(v.at("raycast").verdict, Verdict::Pass) << far;
+        EXPECT_EQ(v.at("raycast").reason.find("no picture is compared") == std::string::npos,
+                  far < 1e5f)
+            << v.at("raycast").reason;
+    }
+}
+
+TEST(Watertight, NothingFailsOfTinyAndLargeBodies)
+{
+    for (int exponent : {-60, -40, -27, 0, 20, 40}) {
+        float const size = std::ldexp(1.0f, exponent);
+        Case c(box(glm::vec3(-size), glm::vec3(size)), "gregory-stencil");
+        Verdicts const v = c.check();
+        expect_clean(v, std::to_string(exponent));
+        EXPECT_EQ(v.at("raycast").verdict, Verdict::Pass) << exponent;
+        EXPECT_EQ(v.at("raycast").reason.find("Embree missed 0 rays"), 0u) << exponent;
+    }
+}
+
+// Patches whose points have no normal.
+class WithoutNormals final : public PatchMesh {
+public:
+    explicit WithoutNormals(PatchMesh const& patches, float normal)
+        : PatchMesh(patches.shared_mesh()),
+          patches_(patches),
+          normal_(normal)
+    {
+    }
+    CommandList commands(SurfaceSettings const& settings) const override
+    {
+        CommandList list = patches_.commands(settings);
+        list.for_each_surface_draw([&](Draw& d) {
+            d.pipeline.domain_epilog =
+                bind_domain_epilog(Epilog{settings.view_projection, normal_}, settings.machine);
+        });
+        return list;
+    }
+    std::vector<PatchCount> patch_counts() const override { return patches_.patch_counts(); }
+
+private:
+    struct Epilog {
+        template <class T> using Input = SurfacePoint<T>;
+        template <class T> using Output = ShadedVertex<T>;
+        Matrix4 view_projection = kIdentity;
+        float normal = 0;
+        template <class T>
+        ShadedVertex<T> operator()(DomainInput<T> const&, SurfacePoint<T> const& s) const
+        {
+            return {transform(view_projection, s.position), {T(normal), T(normal), T(normal)}};
+        }
+    };
+    PatchMesh const& patches_;
+    float normal_;
+};
+
+TEST(Watertight, EqualZerosAndNansAreNoEqualNormals)
+{
+    Case c("golem", "gregory-stencil");
+    c.settings.rays = 0;
+    for (float normal : {0.0f, -0.0f, NAN, INFINITY}) {
+        auto const verdicts =
+            check_watertight(WithoutNormals(c.patches(), normal), c.settings, ThreadPool());
+        CheckedVerdict const& v = verdicts[2];
+        EXPECT_EQ(v.name, "normal");
+        EXPECT_EQ(v.verdict, Verdict::Skipped) << normal;
+        EXPECT_NE(v.reason.find("left out"), std::string::npos) << v.reason;
+    }
+    auto const verdicts =
+        check_watertight(WithoutNormals(c.patches(), 1), c.settings, ThreadPool());
+    EXPECT_EQ(verdicts[2].verdict, Verdict::Pass);
+}
+
+TEST(Mistakes, ThatCannotBeFoundAreSaidNotToBe)
+{
+    auto const why = [](Case const& c, Mistake m) {
+        return why_not_found(m, check_watertight(c.patches(), c.settings, ThreadPool()));
+    };
+    Case open("jug", "gregory-stencil");
+    for (Mistake m : {Mistake::Fold, Mistake::TopLeft}) {
+        open.plant(m);
+        EXPECT_NE(why(open, m).find("skipped, the surface is open"), std::string::npos)
+            << why(open, m);
+    }
+    Case closed("golem", "gregory-stencil");
+    closed.settings.rays = 2000;
+    for (Mistake m : {Mistake::Order, Mistake::Contraction, Mistake::Fold, Mistake::TopLeft}) {
+        closed.plant(m);
+        EXPECT_EQ(why(closed, m), "") << name_of(m);
+    }
+    closed.settings.frame.tess_factor = 1;
+    for (Mistake m : {Mistake::Order, Mistake::Contraction}) {
+        closed.plant(m);
+        EXPECT_NE(why(closed, m).find("the same bits"), std::string::npos) << name_of(m);
+    }
+    EXPECT_EQ(why(closed, Mistake::None), "");
 }
 
 // F: must fail. P: must pass. '-': either; a crack of a last bit may fall between samples and rays.
@@ -324,6 +516,42 @@ TEST(RayCheck, RaysAtVerticesAccuseEmbreeNotTheSurface)
     EXPECT_EQ(c.misses, c.refuted + c.folds + c.past);
     EXPECT_TRUE(c.confirmed.empty());
     EXPECT_GT(c.refuted, c.misses / 2);
+}
+
+// Rays that run exactly through vertices, among them one whose neighbours all lie to one side.
+TEST(RayCheck, BalancesAtVertices)
+{
+    RayMesh octahedron;
+    octahedron.positions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+    octahedron.triangles = {0, 1, 2, 1, 3, 2, 3, 4, 2, 4, 0, 2, 1, 0, 5, 3, 1, 5, 4, 3, 5, 0, 4, 5};
+    RayCheck const c = check_rays(octahedron, RayAim::Vertices, 200000, 1, ThreadPool());
+    EXPECT_GT(c.misses, 1000u) << "Embree loses rays at vertices";
+    EXPECT_TRUE(c.confirmed.empty());
+}
+
+// A mesh on a lattice so coarse that every float involved is exact: in its own frame it is the same
+// mesh wherever it lies and whatever its size, and so are the rays.
+TEST(RayCheck, DoesNotDependOnWhereTheMeshLiesOrOnItsSize)
+{
+    RayMesh sphere = uv_sphere();
+    for (glm::vec3& p : sphere.positions) p = glm::round(p * 1024.0f) / 1024.0f;
+    ThreadPool const threads;
+    RayCheck const here = check_rays(sphere, RayAim::Vertices, 10000, 3, threads);
+    EXPECT_GT(here.misses, 0u);
+    EXPECT_TRUE(here.confirmed.empty());
+    auto const expect_same = [&](auto const& move, char const* what) {
+        RayMesh moved = sphere;
+        for (glm::vec3& p : moved.positions) p = move(p);
+        RayCheck const there = check_rays(moved, RayAim::Vertices, 10000, 3, threads);
+        EXPECT_EQ(there.misses, here.misses) << what;
+        EXPECT_EQ(there.refuted, here.refuted) << what;
+        EXPECT_EQ(there.folds, here.folds) << what;
+        EXPECT_TRUE(there.confirmed.empty()) << what;
+    };
+    expect_same([](glm::vec3 p) { return p + glm::vec3(8192, -4096, 2048); }, "far");
+    expect_same([](glm::vec3 p) { return p * 0x1p-90f; }, "tiny");
+    expect_same([](glm::vec3 p) { return p * 0x1p90f; }, "huge");
+    expect_same([](glm::vec3 p) { return 0x1p-60f * (p + glm::vec3(0, 4096, 0)); }, "both");
 }
 
 // Two triangles side by side, seen head on: what the picture shows must be what rays hit, or lie
