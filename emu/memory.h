@@ -224,7 +224,7 @@ public:
     constexpr ControlPoints(storage_of<T> const* memory, int count) : memory_(memory), count_(count)
     {
     }
-    /// For a compile-time tally: records without values; fetches are added to `*fetches`.
+    /// For a compile-time tally: records with any values; fetches are added to `*fetches`.
     constexpr ControlPoints(FlopCount* sink, int count,
                             std::uint64_t* fetches = nullptr) requires(ScalarTraits<T>::kTally)
         : sink_(sink),
@@ -252,7 +252,8 @@ public:
         if constexpr (ScalarTraits<T>::kTally) {
             if (fetch_sink_) ++*fetch_sink_;
             P p{};
-            for_each_scalar(p, [&](auto& s) { s = T(1.0, sink_); });
+            int k = i * kScalars;
+            for_each_scalar(p, [&](auto& x) { x = tallied(k++); });
             return p;
         } else if constexpr (RecordingScalar<T>) {
             return recorded<P>(i * kScalars);
@@ -290,7 +291,8 @@ public:
         touch(i * kVectors + k);
         if constexpr (ScalarTraits<T>::kTally) {
             if (fetch_sink_) ++*fetch_sink_;
-            return {T(1.0, sink_), T(1.0, sink_), T(1.0, sink_)};
+            int const first = i * kScalars + 3 * k;
+            return {tallied(first), tallied(first + 1), tallied(first + 2)};
         } else if constexpr (RecordingScalar<T>) {
             return recorded<float3<T>>(i * kScalars + 3 * k);
         } else {
@@ -322,6 +324,9 @@ public:
     }
 
 private:
+    /// The value that stands for scalar k in a tally: above 0, and like no other's nearby, so that
+    /// points span a surface.
+    constexpr T tallied(int k) const { return T(double(1 + (5 * k + k * k) % 23), sink_); }
     /// Nodes for the scalars from `first` on; without a recording their values.
     template <class V> V recorded(int first) const
     {

@@ -37,6 +37,24 @@ VertexSource add_skinning(CommandList& list, ControlMesh const& mesh,
     return {*moved, 3, 4};
 }
 
+std::span<float const> add_pole_normals(CommandList& list, Poles const& poles,
+                                        VertexSource const& positions, Machine const& machine)
+{
+    if (poles.empty()) return {};
+    auto const normals =
+        std::make_shared<std::vector<float>>(3 * PoleNormalShader::kVectors * poles.size());
+    list.memory.push_back(normals);
+    PoleNormalShader cs;
+    cs.first = {poles.first, 0, "pole_starts"};
+    cs.faces = {{poles.faces.data()->data(), 4 * poles.faces.size()}, 1, "pole_faces"};
+    cs.positions = {positions.floats, 2, "positions"};
+    cs.normals = {*normals, 3, "pole_normals"};
+    cs.stride = positions.stride;
+    list.commands.emplace_back(
+        Dispatch{"pole normals", bind_compute_shader(cs, machine), groups_for(poles.size(), 64)});
+    return *normals;
+}
+
 void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const& d,
                     SurfaceSettings const& settings)
 {

@@ -6,7 +6,9 @@
 
 #include "pipeline/commands/command_list.h"
 #include "pipeline/commands/surface_settings.h"
+#include "pipeline/mesh/poles.h"
 #include "pipeline/mesh/refinement.h"
+#include "shaders_cpp/pole_normals.h"
 #include "shaders_cpp/skinning.h"
 
 namespace tessemu {
@@ -64,6 +66,12 @@ SkinBuffers skin_of(Pose const& pose);
 /// \param texels  at least so many vertices' room
 VertexSource add_skinning(CommandList& list, ControlMesh const& mesh,
                           SurfaceSettings const& settings, std::size_t texels = 0);
+
+/// Appends the dispatch of the poles' normals, where there are poles; PoleNormals reads them.
+///
+/// \param positions  of the mesh's vertices in the pose that is drawn
+std::span<float const> add_pole_normals(CommandList& list, Poles const& poles,
+                                        VertexSource const& positions, Machine const& machine);
 
 /// What a draw of patches consists of.
 struct PatchDraw {

@@ -7,6 +7,7 @@ namespace tessemu {
 
 std::vector<glm::vec3> vertex_normals(ControlMesh const& mesh)
 {
+    std::vector<std::uint32_t> const point = points_of(mesh);
     std::vector<glm::dvec3> sum(mesh.positions.size(), glm::dvec3(0));
     for (std::size_t f = 0; f < mesh.faces(); ++f) {
         auto const face = mesh.face(f);
@@ -15,12 +16,16 @@ std::vector<glm::vec3> vertex_normals(ControlMesh const& mesh)
         for (std::size_t i = 1; i + 1 < face.size(); ++i)
             area += cross(glm::dvec3(mesh.positions[face[i]]) - origin,
                           glm::dvec3(mesh.positions[face[i + 1]]) - origin);
-        for (std::uint32_t v : face) sum[v] += area;
+        for (std::size_t i = 0; i < face.size(); ++i) {
+            bool first = true; // a face counts once at a point
+            for (std::size_t k = 0; k < i; ++k) first = first && point[face[k]] != point[face[i]];
+            if (first) sum[point[face[i]]] += area;
+        }
     }
     std::vector<glm::vec3> out;
-    for (glm::dvec3 const& n : sum) {
-        double const length = glm::length(n);
-        out.emplace_back(length > 0 ? n / length : glm::dvec3(0));
+    for (std::uint32_t p : point) {
+        double const length = glm::length(sum[p]);
+        out.emplace_back(length > 0 ? sum[p] / length : glm::dvec3(0, 0, 1));
     }
     return out;
 }

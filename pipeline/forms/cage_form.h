@@ -9,8 +9,8 @@
 
 namespace tessemu {
 
-/// Unit normals of the vertices: the mean of the faces around, each by its area; 0 where there is
-/// none.
+/// Unit normals of the vertices: the mean of the faces around, each by its area; z where there is
+/// none. Vertices that edges of no length join have one.
 /// \cost linear in the faces
 std::vector<glm::vec3> vertex_normals(ControlMesh const& mesh);
 

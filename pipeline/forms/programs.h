@@ -18,7 +18,8 @@ namespace tessemu {
     instantiate class HullProgramOn<StencilQuadHullShader<GatheredRows<4>>, T>;                    \
     instantiate class HullProgramOn<StencilTriHullShader<SummedRows<3>>, T>;                       \
     instantiate class HullProgramOn<StencilTriHullShader<GatheredRows<3>>, T>;                     \
-    instantiate class ComputeProgramOn<StencilComputeShader, T>;
+    instantiate class ComputeProgramOn<StencilComputeShader, T>;                                   \
+    instantiate class ComputeProgramOn<PoleNormalShader, T>;
 
 TESSEMU_FORM_PROGRAMS(extern template, FastScalar)
 TESSEMU_FORM_PROGRAMS(extern template, CheckScalar)

@@ -25,24 +25,28 @@ VertexShader vertex_shader(SurfaceSettings const& settings)
 CommandList StencilForm::commands(SurfaceSettings const& settings, Tables const& tables) const
 {
     CommandList list;
+    VertexSource positions = positions_of(mesh().mesh()); // of dispatches
+    if (settings.pose && (!poles_.empty() || !tables.wide.empty()))
+        positions = add_skinning(list, mesh().mesh(), settings);
+    std::span<float const> const poles =
+        add_pole_normals(list, poles_, positions, settings.machine);
     VertexShader const vertex = vertex_shader(settings);
     for (Group const& g : tables.groups) {
-        StencilBuffers const buffers{tables.weights, tables.zero_masks, g.words, g.order};
+        StencilBuffers const buffers{tables.weights, tables.zero_masks, g.words, g.order, poles};
         add_patch_draw(list, mesh(),
                        {kinds_[g.kind], positions_of(mesh().mesh()), g.inputs, g.indices, g.patches,
                         vertex, hull_shader(g.kind, buffers, settings),
                         domain_shader(g.kind, settings)},
                        settings);
     }
-    if (!tables.wide.empty()) add_wide_draws(list, settings, tables);
+    add_wide_draws(list, settings, tables, positions, poles);
     return list;
 }
 
 void StencilForm::add_wide_draws(CommandList& list, SurfaceSettings const& settings,
-                                 Tables const& tables) const
+                                 Tables const& tables, VertexSource const& positions,
+                                 std::span<float const> poles) const
 {
-    VertexSource positions = positions_of(mesh().mesh());
-    if (settings.pose) positions = add_skinning(list, mesh().mesh(), settings);
     VertexShader const vertex = bind_vertex_shader(PassThroughVertexShader{}, settings.machine);
     for (WideGroup const& g : tables.wide) {
         std::size_t const rows = g.first.size() - 1;
@@ -58,7 +62,7 @@ void StencilForm::add_wide_draws(CommandList& list, SurfaceSettings const& setti
         cs.rows = int(rows);
         list.commands.emplace_back(
             Dispatch{"stencils", bind_compute_shader(cs, settings.machine), groups_for(rows, 64)});
-        GatheredBuffers const buffers{g.rows, *sums, g.words, g.constants};
+        GatheredBuffers const buffers{g.rows, *sums, g.words, g.constants, poles};
         add_patch_draw(list, mesh(),
                        {kinds_[g.kind],
                         {*sums, 3, 3},
@@ -100,6 +104,7 @@ void StencilForm::make_tables()
     };
     Topology const& topology = mesh().topology();
     std::vector<char> const hidden = hidden_faces(mesh(), warnings_);
+    poles_ = find_poles(topology);
     std::unordered_map<std::string, std::uint32_t> type_ids;
     std::vector<Patch> patches;
     Neighbourhood n;
@@ -169,18 +174,25 @@ template <class Index> std::vector<Index> ascending(Neighbourhood const& n)
     return order;
 }
 
-std::uint32_t reversed_edges(Neighbourhood const& n)
+} // namespace
+
+std::uint32_t StencilForm::edge_bits(Neighbourhood const& n) const
 {
-    std::uint32_t reversed = 0;
+    std::uint32_t bits = 0;
     for (int k = 0; k < n.sides; ++k) {
         std::uint32_t const a = n.inputs[std::size_t(n.corner[k].vertex())];
         std::uint32_t const b = n.inputs[std::size_t(n.corner[(k + 1) % n.sides].vertex())];
-        if (a > b) reversed |= 1u << k;
+        if (a > b) bits |= 1u << (EdgeBits::kReversed + k);
+        if (poles_.collapsed(a, b)) bits |= 1u << (EdgeBits::kCollapsed + k);
     }
-    return reversed;
+    return bits;
 }
 
-} // namespace
+std::uint32_t StencilForm::corner_row(Neighbourhood const& n, int corner, int row) const
+{
+    std::uint32_t const pole = poles_.at(n.inputs[std::size_t(n.corner[corner].vertex())]);
+    return pole == Poles::kNone ? std::uint32_t(row) : std::uint32_t(kPole) + pole;
+}
 
 void StencilForm::add_patch(Type const& t, Neighbourhood const& n, std::uint32_t face)
 {
@@ -193,9 +205,9 @@ void StencilForm::add_patch(Type const& t, Neighbourhood const& n, std::uint32_t
     std::vector<std::uint8_t> const order = ascending<std::uint8_t>(n);
     g.order.insert(g.order.end(), order.begin(), order.end());
     g.words.insert(g.words.end(), {std::uint32_t(t.first_weight), std::uint32_t(t.first_mask),
-                                   std::uint32_t(t.rows), reversed_edges(n)});
+                                   std::uint32_t(t.rows), edge_bits(n)});
     for (int i = 0; i < n.sides; ++i)
-        g.words.push_back(std::uint32_t(t.stencils.corner_row[i] + 2 * n.ring_shift[i]));
+        g.words.push_back(corner_row(n, i, t.stencils.corner_row[i] + 2 * n.ring_shift[i]));
 }
 
 void StencilForm::add_wide_patch(Type const& t, Neighbourhood const& n, std::uint32_t face)
@@ -216,7 +228,9 @@ void StencilForm::add_wide_patch(Type const& t, Neighbourhood const& n, std::uin
     auto const first_row = std::uint32_t(g.first.size() - 1);
     for (int i = 0; i < g.points; ++i) g.indices.push_back(first_row + std::uint32_t(i));
     g.patches.push_back(mesh().place(face, n.rotation));
-    g.words.insert(g.words.end(), {reversed_edges(n), std::uint32_t(g.constants.size())});
+    g.words.insert(g.words.end(), {edge_bits(n), std::uint32_t(g.constants.size())});
+    for (int i = 0; i < n.sides; ++i)
+        g.words.push_back(corner_row(n, i, s.control_points + 4 * n.sides + 2 * i));
     for (double c : s.constants) g.constants.push_back(float(c));
     std::vector<std::uint32_t> const order = ascending<std::uint32_t>(n);
     auto const add_row = [&](StencilRow const& row) {

@@ -21,6 +21,7 @@ struct StencilBuffers {
     std::span<float const> weights;
     std::span<std::uint32_t const> zero_masks, patches;
     std::span<std::uint8_t const> order;
+    std::span<float const> poles; ///< see PoleNormals
 };
 /// The same of wide patches; see GatheredRows.
 struct GatheredBuffers {
@@ -28,6 +29,7 @@ struct GatheredBuffers {
     std::span<float const> sums;
     std::span<std::uint32_t const> patches;
     std::span<float const> constants;
+    std::span<float const> poles;
 };
 using RowBuffers = std::variant<StencilBuffers, GatheredBuffers>;
 
@@ -102,10 +104,13 @@ private:
     void add_type(std::uint32_t face, Neighbourhood const& n);
     void add_patch(Type const& t, Neighbourhood const& n, std::uint32_t face);
     void add_wide_patch(Type const& t, Neighbourhood const& n, std::uint32_t face);
-    void add_wide_draws(CommandList& list, SurfaceSettings const& settings,
-                        Tables const& tables) const;
+    void add_wide_draws(CommandList& list, SurfaceSettings const& settings, Tables const& tables,
+                        VertexSource const& positions, std::span<float const> poles) const;
+    std::uint32_t edge_bits(Neighbourhood const& n) const;
+    std::uint32_t corner_row(Neighbourhood const& n, int corner, int row) const;
 
     std::vector<PatchKind> kinds_;
+    Poles poles_;
     Tables tables_;
     std::vector<Type> types_;
     std::vector<std::string> warnings_;
@@ -120,8 +125,9 @@ template <template <class> class Shader, int kSides>
 HullShader stencil_hull_shader(RowBuffers const& buffers, int points,
                                SurfaceSettings const& settings)
 {
-    auto const bound = [&](auto hs) {
+    auto const bound = [&](auto hs, std::span<float const> poles, int slot) {
         hs.points = points;
+        hs.poles.normals = {poles, slot, "pole_normals"};
         hs.factors = settings.factor_rule();
         return bind_hull_shader(hs, settings.machine);
     };
@@ -131,7 +137,7 @@ HullShader stencil_hull_shader(RowBuffers const& buffers, int points,
                    {b->sums, 0, "stencil_sums"},
                    {b->patches, 1, "patch_words"},
                    {b->constants, 2, "type_constants"}};
-        return bound(hs);
+        return bound(hs, b->poles, 3);
     }
     StencilBuffers const& b = std::get<StencilBuffers>(buffers);
     Shader<SummedRows<kSides>> hs;
@@ -139,7 +145,7 @@ HullShader stencil_hull_shader(RowBuffers const& buffers, int points,
                {b.zero_masks, 1, "zero_masks"},
                {b.patches, 2, "patch_words"},
                {b.order, 3, "order"}};
-    return bound(hs);
+    return bound(hs, b.poles, 4);
 }
 
 } // namespace tessemu

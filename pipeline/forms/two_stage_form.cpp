@@ -27,6 +27,7 @@ std::uint32_t TwoStageForm::most_edges(std::uint32_t face) const
 void TwoStageForm::make_tables()
 {
     std::vector<char> const hidden = hidden_faces(mesh(), warnings_);
+    poles_ = find_poles(mesh().topology());
     std::size_t wide = 0;
     std::uint32_t most = 0, first = std::numeric_limits<std::uint32_t>::max();
     for (std::uint32_t f = 0; f < mesh().mesh().faces(); ++f) {
@@ -69,7 +70,10 @@ void TwoStageForm::add_patch(std::uint32_t f, bool wide)
             g.offsets.push_back(corner_offsets(topology, h));
         }
         if (face[i] > face[(i + 1) % n]) bits |= 1u << i;
-        if (topology.twin(h) == Topology::kNone) bits |= 256u << i;
+        if (topology.twin(h) == Topology::kNone) bits |= 1u << (8 + i);
+        if (poles_.collapsed(face[i], face[(i + 1) % n])) bits |= 1u << (16 + i);
+        if (poles_.at(face[i]) != Poles::kNone) bits |= 1u << (24 + i);
+        if (!poles_.empty()) g.poles.push_back(poles_.at(face[i]));
     }
     g.edges.push_back(bits);
 }
@@ -97,6 +101,7 @@ CommandList TwoStageForm::commands(SurfaceSettings const& settings) const
         vertices = add_skinning(list, mesh().mesh(), settings, rings_.positions.size() / 4);
         positions = vertices.floats;
     }
+    std::span<float const> const poles = add_pole_normals(list, poles_, vertices, settings.machine);
     RingTextures textures;
     textures.rings = {rings_.rings, 0, "ring_heads"};
     textures.entries = {rings_.entries, 1, "ring_entries"};
@@ -108,15 +113,16 @@ CommandList TwoStageForm::commands(SurfaceSettings const& settings) const
         if (g.patches.empty()) continue;
         add_patch_draw(list, mesh(),
                        {kinds_[k].kind, vertices, kinds_[k].sides, g.indices, g.patches, vertex,
-                        hull_shader(k, {g.offsets, g.edges, angles_}, settings),
+                        hull_shader(k, {g.offsets, g.edges, angles_, g.poles, poles}, settings),
                         domain_shader(k, settings)},
                        settings);
     }
-    add_wide_draws(list, textures, settings);
+    add_wide_draws(list, textures, poles, settings);
     return list;
 }
 
 void TwoStageForm::add_wide_draws(CommandList& list, RingTextures const& textures,
+                                  std::span<float const> poles,
                                   SurfaceSettings const& settings) const
 {
     constexpr std::size_t kFloats = scalar_count<RingWindow<float>>();
@@ -136,7 +142,7 @@ void TwoStageForm::add_wide_draws(CommandList& list, RingTextures const& texture
                         g.indices,
                         g.patches,
                         bind_vertex_shader(RingWindowVertexShader{}, settings.machine),
-                        hull_shader(k, {g.offsets, g.edges, angles_}, settings),
+                        hull_shader(k, {g.offsets, g.edges, angles_, g.poles, poles}, settings),
                         domain_shader(k, settings)},
                        settings);
     }

@@ -19,6 +19,8 @@ namespace tessemu {
 struct CornerBuffers {
     std::span<std::uint32_t const> offsets, edges;
     std::span<float const> angles;
+    std::span<std::uint32_t const> corner_poles;
+    std::span<float const> poles; ///< see PoleNormals
 };
 
 /// What the dispatch of wide patches reads and writes; see CornerWindow.
@@ -69,6 +71,7 @@ private:
     struct Group {
         std::vector<PatchPlace> patches;
         std::vector<std::uint32_t> indices, offsets, edges;
+        std::vector<std::uint32_t> poles;   // by corner; empty: the mesh has none
         std::vector<std::uint32_t> windows; // of wide patches: CornerWindow by corner
     };
     // Where the constants of a ring and its row of the angles are.
@@ -79,9 +82,10 @@ private:
     std::uint32_t most_edges(std::uint32_t face) const;
     void add_patch(std::uint32_t face, bool wide);
     void add_wide_draws(CommandList& list, RingTextures const& textures,
-                        SurfaceSettings const& settings) const;
+                        std::span<float const> poles, SurfaceSettings const& settings) const;
 
     std::vector<Kind> kinds_;
+    Poles poles_;
     VertexRings rings_;
     std::vector<float> angles_;
     std::vector<Group> groups_, wide_; // by kind
@@ -99,6 +103,8 @@ HullShader corner_hull_shader(CornerBuffers const& buffers, SurfaceSettings cons
     hs.offsets = {buffers.offsets, 0, "corner_offsets"};
     hs.edges = {buffers.edges, 1, "edge_bits"};
     hs.angles = {buffers.angles, 2, "angles"};
+    hs.corner_poles = {buffers.corner_poles, 3, "corner_poles"};
+    hs.poles.normals = {buffers.poles, 4, "pole_normals"};
     hs.factors = settings.factor_rule();
     return bind_hull_shader(hs, settings.machine);
 }

@@ -73,7 +73,8 @@ struct CornerHullShader : CornerTables<kDomain_ == TessellatorDomain::Quad ? 4 :
         auto const r = Tables::template field_register<T>(patch, id);
         mask_of<T> const end = (r.which == Int(0)) | (r.which == Int(3));
         V value = when(
-            !r.on_edge, [&]() -> V { return in.vector(r.corner, Int(RingLayout::kNormal)); }, zero);
+            !r.on_edge, [&]() -> V { return Tables::template corner_normal<T>(patch, in, r); },
+            zero);
         value = when(
             r.on_edge & !r.alone,
             [&]() -> V {

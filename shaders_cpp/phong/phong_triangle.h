@@ -51,7 +51,10 @@ struct PhongTriangle {
         float3<T> const qa = phong_projected<T>(p, a, in.u), qb = phong_projected<T>(p, b, in.v),
                         qc = phong_projected<T>(p, c, in.w);
         float3<T> const q = qa + qb + qc;
-        return {float3<T>(T(1 - alpha) * p + T(alpha) * q), unit_or_zero(float3<T>(na + nb + nc))};
+        // Opposite normals cancel in between: there is z, the same from both sides of an edge.
+        float3<T> const normal =
+            unit_or(float3<T>(na + nb + nc), T(0), [] { return float3<T>(T(0), T(0), T(1)); });
+        return {float3<T>(T(1 - alpha) * p + T(alpha) * q), normal};
     }
 };
 

@@ -97,7 +97,7 @@ struct PmHullShader : CornerTables<kDomain_ == TessellatorDomain::Quad ? 4 : 3, 
         mask_of<T> const middle = id >= Int(R::kMiddle);
         V value = when(
             !(r.on_edge | middle),
-            [&]() -> V { return in.vector(r.corner, Int(RingLayout::kNormal)); }, zero);
+            [&]() -> V { return Tables::template corner_normal<T>(patch, in, r); }, zero);
         value = when(
             r.on_edge,
             [&]() -> V { return pm_transversal<T>(patch, in, r.corner, r.which, r.far); }, value);
@@ -230,12 +230,12 @@ struct PmRegularHullShader : PmHullShader<TessellatorDomain::Quad, Weight> {
     EdgeRegister<T> patch_constant(PatchInput patch, ControlPoints<RingVertex<T>> const& in,
                                    ControlPoints<CornerVectors<4, T>> const&, int_of<T> id) const
     {
-        using Int = int_of<T>;
         using V = float3<T>;
         V const zero(T(0), T(0), T(0));
         auto const r = Tables::template field_register<T>(patch, id);
         V const normal = when(
-            !r.on_edge, [&]() -> V { return in.vector(r.corner, Int(RingLayout::kNormal)); }, zero);
+            !r.on_edge, [&]() -> V { return Tables::template corner_normal<T>(patch, in, r); },
+            zero);
         return Tables::template packed<T>(r, when(
                                                  r.on_edge,
                                                  [&]() -> V {

@@ -11,18 +11,26 @@
 
 #include "emu/hull_shader.h"
 #include "shaders_cpp/cubic_edges.h"
+#include "shaders_cpp/pole_normals.h"
 #include "shaders_cpp/stencil_form/stencil_row.h"
 #include "shaders_cpp/tess_factor_rule.h"
 
 namespace tessemu {
+
+/// Bits of a patch's edges, and what tells a pole from a row.
+struct EdgeBits {
+    static constexpr int kReversed = 0;  ///< shift: bit k, edge k runs against its canonical one
+    static constexpr int kCollapsed = 8; ///< shift: bit k, both ends of edge k are the same pole
+};
+inline constexpr std::int32_t kPole = 1 << 30;
 
 /// What the hull shader knows of a patch besides its vertices; 4 + sides words each.
 struct StencilPatchWords {
     static constexpr int kWeights = 0;    ///< first weight of the type's table
     static constexpr int kMasks = 1;      ///< first mask of the type's table
     static constexpr int kRows = 2;       ///< rows of the type's table
-    static constexpr int kReversed = 3;   ///< bit k: edge k runs against its canonical direction
-    static constexpr int kCornerRows = 4; ///< per corner: row of its first tangent
+    static constexpr int kEdges = 3;      ///< EdgeBits
+    static constexpr int kCornerRows = 4; ///< per corner: row of its first tangent, or kPole + pole
     static constexpr int count(int sides) { return 4 + sides; }
 };
 
@@ -71,11 +79,11 @@ template <int kSides, class Weight = float> struct SummedRows {
     {
         return row<T>(patch, in, id);
     }
-    template <class T> std::int32_t reversed_edges(PatchInput patch) const
+    template <class T> std::int32_t edge_bits(PatchInput patch) const
     {
-        return word<T>(patch, StencilPatchWords::kReversed);
+        return word<T>(patch, StencilPatchWords::kEdges);
     }
-    /// The first of the corner's two tangents.
+    /// The first of the corner's two tangents, or kPole + its pole.
     template <class T> int_of<T> corner_row(PatchInput patch, int_of<T> corner) const
     {
         return load<T>(patches,
@@ -102,9 +110,10 @@ private:
 
 /// What the hull shader knows of a patch whose rows a dispatch sums.
 struct GatheredPatchWords {
-    static constexpr int kReversed = 0; ///< as StencilPatchWords'
-    static constexpr int kConstant = 1; ///< first constant of the type
-    static constexpr int kCount = 2;
+    static constexpr int kEdges = 0;      ///< EdgeBits
+    static constexpr int kConstant = 1;   ///< first constant of the type
+    static constexpr int kCornerRows = 2; ///< per corner, as StencilPatchWords'
+    static constexpr int count(int sides) { return 2 + sides; }
 };
 
 /// Rows that a dispatch has summed. The control points, first of a patch's rows, arrive as its
@@ -131,13 +140,14 @@ template <int kSides> struct GatheredRows {
     {
         return in[id].position;
     }
-    template <class T> std::int32_t reversed_edges(PatchInput patch) const
+    template <class T> std::int32_t edge_bits(PatchInput patch) const
     {
-        return word<T>(patch, GatheredPatchWords::kReversed);
+        return word<T>(patch, GatheredPatchWords::kEdges);
     }
-    template <class T> int_of<T> corner_row(PatchInput, int_of<T> corner) const
+    template <class T> int_of<T> corner_row(PatchInput patch, int_of<T> corner) const
     {
-        return int_of<T>(rows - 2 * kSides) + (corner << int_of<T>(1));
+        return load<T>(patches,
+                       int_of<T>(first_word(patch) + GatheredPatchWords::kCornerRows) + corner);
     }
     template <class T> std::int32_t first_constant(PatchInput patch, int) const
     {
@@ -146,9 +156,13 @@ template <int kSides> struct GatheredRows {
     Buffer<float> const& constants() const { return type_constants; }
 
 private:
+    static std::int32_t first_word(PatchInput patch)
+    {
+        return patch.primitive_id * GatheredPatchWords::count(kSides);
+    }
     template <class T> std::int32_t word(PatchInput patch, int which) const
     {
-        return load<T>(patches, patch.primitive_id * GatheredPatchWords::kCount + which);
+        return load<T>(patches, first_word(patch) + which);
     }
 };
 
@@ -165,11 +179,17 @@ struct StencilHullShader {
 
     int points = 20; ///< output control points that are rows
     Rows rows;
+    PoleNormals poles;
     TessFactorRule factors;
 
     int control_points() const { return points; }
     int patch_constants() const { return 6 * kSides; }
-    std::vector<ResourceInfo> resources() const { return rows.resources(); }
+    std::vector<ResourceInfo> resources() const
+    {
+        std::vector<ResourceInfo> out = rows.resources();
+        poles.add_to(out);
+        return out;
+    }
 
     template <class T>
     ControlVertex<T> control_point(PatchInput patch, ControlPoints<ControlVertex<T>> const& in,
@@ -186,16 +206,28 @@ struct StencilHullShader {
                                    auto const&, int_of<T> id) const
     {
         using Int = int_of<T>;
-        Int const bits = Int(rows.template reversed_edges<T>(patch));
+        Int const bits = Int(rows.template edge_bits<T>(patch));
         Int const edge = id >> Int(2), m = id & Int(3);
         auto const on_edge = id < Int(4 * kSides);
-        auto const reversed = on_edge & (((bits >> (edge & Int(3))) & Int(1)) != Int(0));
+        auto const bit = [&](int shift) {
+            return on_edge & (((bits >> (Int(shift) + (edge & Int(3)))) & Int(1)) != Int(0));
+        };
+        auto const reversed = bit(EdgeBits::kReversed);
         Int const edge_row = Int(points) + (edge << Int(2)) + select(reversed, Int(3) - m, m);
         Int const corner = select(on_edge, Int(0), (id - Int(4 * kSides)) >> Int(1));
-        Int const corner_row = rows.template corner_row<T>(patch, corner) + (id & Int(1));
-        float3<T> const v = rows.template row<T>(patch, in, select(on_edge, edge_row, corner_row));
+        Int const corner_row = rows.template corner_row<T>(patch, corner);
+        mask_of<T> const pole = (corner_row >= Int(kPole)) & (id >= Int(4 * kSides));
+        Int const own_row = select(pole, Int(points), corner_row + (id & Int(1)));
+        float3<T> const row = rows.template row<T>(patch, in, select(on_edge, edge_row, own_row));
+        float3<T> const v = when(
+            pole,
+            [&]() -> float3<T> {
+                return poles.vector<T>(corner_row - Int(kPole),
+                                       Int(PoleNormalShader::kTangents) + (id & Int(1)));
+            },
+            row);
         auto const negative = on_edge & (m >= Int(2));
-        return {select(negative, -v, v), select(reversed, T(1), T(0))};
+        return edge_register<T>(select(negative, -v, v), m, reversed, bit(EdgeBits::kCollapsed));
     }
 
     template <class T>

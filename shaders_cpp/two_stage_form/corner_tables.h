@@ -6,6 +6,7 @@
 
 #include "emu/hull_shader.h"
 #include "shaders_cpp/cubic_edges.h"
+#include "shaders_cpp/pole_normals.h"
 #include "shaders_cpp/tess_factor_rule.h"
 #include "shaders_cpp/two_stage_form/ring_vertex.h"
 
@@ -28,15 +29,21 @@ template <int kSides_, class Weight = float> struct CornerTables {
 
     Buffer<std::uint32_t> offsets; ///< [patch][corner]: edge of e+ | edge of e- << 8 | row of its
                                    ///< vertex in the ring tables << 16
-    Buffer<std::uint32_t> edges;   ///< [patch]: bit k: edge k runs against its canonical direction;
-                                   ///< bit 8 + k: it lies on the boundary
-    Buffer<Weight> angles;         ///< [row][2]: the vertex's cosine, and sin(2pi/n)
+    /// [patch]: bit k: edge k runs against its canonical direction; bit 8 + k: it lies on the
+    /// boundary; bit 16 + k: it is collapsed; bit 24 + i: corner i is a pole.
+    Buffer<std::uint32_t> edges;
+    Buffer<Weight> angles;              ///< [row][2]: the vertex's cosine, and sin(2pi/n)
+    Buffer<std::uint32_t> corner_poles; ///< [patch][corner]: its pole, where it is one
+    PoleNormals poles;
     TessFactorRule factors;
 
     int control_points() const { return kSides; }
     std::vector<ResourceInfo> resources() const
     {
-        return {offsets.info(), edges.info(), angles.info()};
+        std::vector<ResourceInfo> out{offsets.info(), edges.info(), angles.info()};
+        if (corner_poles.info().elements) out.push_back(corner_poles.info());
+        poles.add_to(out);
+        return out;
     }
 
     template <class T> struct Corner {
@@ -85,10 +92,13 @@ template <int kSides_, class Weight = float> struct CornerTables {
         mask_of<T> on_edge;  ///< it belongs to an edge; the other masks say something of edges only
         mask_of<T> alone;    ///< the edge lies on the boundary: this patch alone has it
         mask_of<T> reversed; ///< the edge runs against its canonical direction
-        mask_of<T> negative; ///< what is stored is -E_which
-        mask_of<T> far;      ///< E_which belongs to corner k+1, else to corner k
-        int_of<T> which;     ///< 0 to 3
-        int_of<T> corner;    ///< whose vertex E_which or the normal is made from
+        mask_of<T> collapsed; ///< both ends of the edge are the same pole
+        mask_of<T> pole;      ///< the corner is a pole
+        mask_of<T> negative;  ///< what is stored is -E_which
+        mask_of<T> far;       ///< E_which belongs to corner k+1, else to corner k
+        int_of<T> place;      ///< m
+        int_of<T> which;      ///< 0 to 3
+        int_of<T> corner;     ///< whose vertex E_which or the normal is made from
     };
     template <class T> FieldRegister<T> field_register(PatchInput patch, int_of<T> id) const
     {
@@ -96,22 +106,44 @@ template <int kSides_, class Weight = float> struct CornerTables {
         Int const bits = Int(load<T>(edges, patch.primitive_id));
         mask_of<T> const on_edge = id < Int(4 * kSides);
         Int const edge = id >> Int(2), m = id & Int(3), k = edge & Int(3);
-        mask_of<T> const reversed = on_edge & (((bits >> k) & Int(1)) != Int(0));
-        mask_of<T> const alone = on_edge & (((bits >> (Int(8) + k)) & Int(1)) != Int(0));
+        auto const bit = [&](Int i) { return ((bits >> i) & Int(1)) != Int(0); };
+        mask_of<T> const reversed = on_edge & bit(k);
+        mask_of<T> const alone = on_edge & bit(Int(8) + k);
         Int const which = select(reversed, Int(3) - m, m);
         mask_of<T> const far = which >= Int(2);
+        mask_of<T> const corner = (id >= Int(4 * kSides)) & (id < Int(5 * kSides));
         return {on_edge,
                 alone,
                 reversed,
+                mask_of<T>(on_edge & bit(Int(16) + k)),
+                mask_of<T>(corner & bit(Int(24) + (id & Int(3)))),
                 mask_of<T>(on_edge & (m >= Int(2))),
                 far,
+                m,
                 which,
                 select(on_edge, select(far, next<T>(edge), edge), id - Int(4 * kSides))};
     }
     template <class T>
     static EdgeRegister<T> packed(FieldRegister<T> const& r, float3<T> const& value)
     {
-        return {select(r.negative, -value, value), select(r.reversed, T(1), T(0))};
+        return edge_register<T>(select(r.negative, -value, value), r.place, r.reversed,
+                                r.collapsed);
+    }
+
+    /// The normal's direction at a corner: its vertex's, or its pole's.
+    template <class T>
+    float3<T> corner_normal(PatchInput patch, ControlPoints<RingVertex<T>> const& in,
+                            FieldRegister<T> const& r) const
+    {
+        using Int = int_of<T>;
+        return when(
+            r.pole,
+            [&]() -> float3<T> {
+                Int const pole =
+                    Int(load<T>(corner_poles, Int(patch.primitive_id * kSides) + r.corner));
+                return poles.vector<T>(pole, Int(PoleNormalShader::kNormal));
+            },
+            in.vector(r.corner, Int(RingLayout::kNormal)));
     }
 
     /// 3/2 (e_(j+1) - e_(j-1)).
