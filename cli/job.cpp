@@ -34,9 +34,22 @@ void ProgressBar::operator()(std::size_t done, std::size_t all)
     shown_ = true;
 }
 
-void print_warnings(std::vector<std::string> const& warnings)
+void print_warning(std::string const& warning)
 {
-    for (std::string const& w : warnings) fmt::print(stderr, "warning: {}\n", w);
+    fmt::print(stderr, "warning: {}\n", warning);
+}
+
+Model open_model(std::string const& model)
+{
+    return load_model(model, print_warning);
+}
+
+std::vector<std::string> without_folder(std::vector<std::string> warnings, std::string const& path)
+{
+    std::string const folder = path.substr(0, path.find_last_of('/') + 1);
+    for (std::string& w : warnings)
+        if (!folder.empty() && w.starts_with(folder)) w.erase(0, folder.size());
+    return warnings;
 }
 
 void write_text(std::string const& path, std::string const& text)
@@ -54,12 +67,15 @@ void print_table(std::string const& json_path, std::string const& table)
 
 SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make)
 {
+    BuildOptions options = o.build;
+    options.lines = std::move(model.lines);
+    options.warn = print_warning;
     try {
-        return make(*o.scheme, std::move(model.mesh), o.build);
+        return make(*o.scheme, std::move(model.mesh), options);
     } catch (MeshError const& e) {
-        throw FormatError(model.path, model.line_of_face(e.face), e.what());
+        throw FormatError(options.lines.file, options.lines.line_of_face(e.face), e.what());
     } catch (LimitError const& e) {
-        throw FormatError(model.path, 0, e.what());
+        throw FormatError(options.lines.file, 0, e.what());
     }
 }
 
@@ -83,8 +99,9 @@ Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const
     job.frame.true_normals = shading.true_normals;
     job.poses.emplace_back();
     Stopwatch const load_clock;
-    Model model = load_model(o.model);
+    Model model = open_model(o.model);
     job.load_seconds = load_clock.seconds();
+    job.path = model.lines.file;
     job.header.verb = verb;
     job.header.inputs = {{model.name, model.sha256}};
     job.header.warnings = std::move(model.warnings);
@@ -93,6 +110,7 @@ Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const
     job.build_seconds = build_clock.seconds();
     auto const& more = job.surface.warnings;
     job.header.warnings.insert(job.header.warnings.end(), more.begin(), more.end());
+    job.header.warnings = without_folder(std::move(job.header.warnings), job.path);
     job.header.config = config_of(o, job.surface.parameters);
     return job;
 }
@@ -103,15 +121,6 @@ void add_config(Config& c, ShadingRequest const& o)
     c.emplace_back("contraction", name_of(o.products));
 }
 
-// Warnings of the file carry its path; a result must not.
-void report_warnings(ReportHeader& header, std::string const& path)
-{
-    print_warnings(header.warnings);
-    std::string const prefix = path.substr(0, path.find_last_of('/') + 1);
-    for (std::string& w : header.warnings)
-        if (!prefix.empty() && w.starts_with(prefix)) w.erase(0, prefix.size());
-}
-
 float diagonal_of(ControlMesh const& mesh)
 {
     glm::vec3 low(INFINITY), high(-INFINITY);
@@ -119,9 +128,9 @@ float diagonal_of(ControlMesh const& mesh)
     return glm::length(high - low);
 }
 
-std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o,
-                                                      RefinedMesh const& mesh)
+std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o, Job const& job)
 {
+    RefinedMesh const& mesh = *job.surface.mesh;
     using Kind = DisplaceRequest::Heights::Kind;
     auto const& [kind, path] = o.displace.heights;
     if (kind == Kind::None) return {};
@@ -133,7 +142,7 @@ std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o,
     try {
         return std::make_shared<Displacement>(mesh.base_topology(), image, scale);
     } catch (Error const& e) {
-        throw Error(o.model.model + ": " + e.what());
+        throw Error(job.path + ": " + e.what());
     }
 }
 
@@ -181,7 +190,6 @@ Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string co
 {
     Job job = open(o, shading, verb, build_scheme);
     add_config(job.header.config, shading);
-    report_warnings(job.header, o.model);
     return job;
 }
 
@@ -194,7 +202,7 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     f.tess_factor = float(o.tess);
     if (o.vertex_cache) f.vertex_cache = *o.vertex_cache;
     f.direct3d10 = o.direct3d10;
-    f.displacement = make_displacement(o, *job.surface.mesh);
+    f.displacement = make_displacement(o, job);
     job.poses = make_poses(o.animate, job.surface.mesh->mesh());
     f.pose = job.poses[0].pose;
 
@@ -212,7 +220,6 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     if (f.displacement) c.emplace_back("displace_scale", double(f.displacement->scale()));
     c.emplace_back("animate", name_of(o.animate.motion));
     if (f.pose) c.emplace_back("phase", o.animate.phase);
-    report_warnings(h, o.model.model);
     return job;
 }
 

@@ -37,7 +37,12 @@ private:
     bool shown_ = false;
 };
 
-void print_warnings(std::vector<std::string> const& warnings);
+/// At once, so that a warning stands before the error that follows from it.
+void print_warning(std::string const& warning);
+/// A model as its warnings are printed.
+Model open_model(std::string const& model);
+/// Warnings of a file carry its path; a result must not.
+std::vector<std::string> without_folder(std::vector<std::string> warnings, std::string const& path);
 /// Writes text to a file, or prints it for "-".
 void write_text(std::string const& path, std::string const& text);
 /// Prints a table, unless JSON is printed.
@@ -62,6 +67,7 @@ struct Job {
     FrameSettings frame;
     std::vector<FramePose> poses; ///< one at least
     ReportHeader header;
+    std::string path; ///< of the model, for messages
     double load_seconds = 0, build_seconds = 0;
 
     PatchMesh const& patches() const { return *surface.patches; }
@@ -69,11 +75,11 @@ struct Job {
 
 /// build_scheme, or refine_for_scheme for who needs no patches.
 using MakeSurface = SchemeOnMesh(Scheme const&, ControlMesh, BuildOptions const&);
-/// Errors about the mesh name the file, and the line where it is known.
+/// Prints warnings. Errors about the mesh name the file, and the line where it is known.
 SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make = build_scheme);
 /// "scheme", "subdivide" and each parameter by its name.
 Config config_of(ModelRequest const& o, Parameters const& parameters);
-/// The model and its settings for shading. Prints warnings.
+/// The model and its settings for shading.
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb);
 /// With everything that verbs that tessellate share.
 Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make = build_scheme);

@@ -199,7 +199,8 @@ VertexCacheModel parse_vertex_cache(std::string const& text, std::string const&)
 
 void add_options(Verb& verb, ModelRequest& o)
 {
-    verb.required("MODEL", o.model, plain, "OBJ file or built-in cage, see 'tessemu models'");
+    verb.required("MODEL", o.model, plain,
+                  "OBJ file, - for standard input, or built-in cage, see 'tessemu models'");
     verb.option("--scheme", o.scheme, parse_scheme, "patch scheme, see 'tessemu schemes'",
                 "gregory-stencil");
     verb.list("--set", o.build.set, parse_parameter, "NAME=VALUE: a parameter of the scheme");

@@ -13,7 +13,7 @@ namespace tessemu {
 
 /// MODEL, --scheme, --set, --subdivide
 struct ModelRequest {
-    std::string model; ///< a path, or a built-in's name
+    std::string model; ///< a path, "-" or a built-in's name
     Scheme const* scheme = nullptr;
     BuildOptions build;
 };

@@ -9,6 +9,8 @@
 
 #include "pipeline/commands/patch_mesh.h"
 #include "pipeline/mesh/catmull_clark.h"
+#include "pipeline/mesh/file_lines.h"
+#include "pipeline/mesh/warnings.h"
 
 #include <limits>
 #include <map>
@@ -99,6 +101,10 @@ struct BuildOptions {
     ParameterTexts set = {};
     /// Refuses a mesh that would have to be cut or to lose faces.
     bool strict = false;
+    /// Of the mesh's file, for warnings.
+    FileLines lines = {};
+    /// Hears the warnings, those before an error before it is thrown.
+    WarningSink warn = {};
 };
 
 /// Makes the mesh a manifold, refines it as options and scheme ask, checks it and builds. Throws

@@ -38,11 +38,11 @@ fs::path scratch()
     return folder;
 }
 
-Result run(std::string const& arguments)
+Result run(std::string const& arguments, fs::path const& input = "/dev/null")
 {
     fs::path const out = scratch() / "stdout", err = scratch() / "stderr";
     std::string const command = std::string(TESSEMU_PROGRAM) + " " + arguments + " >" +
-                                out.string() + " 2>" + err.string() + " </dev/null";
+                                out.string() + " 2>" + err.string() + " <" + input.string();
     int const status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::read_text(out),
             test::read_text(err)};
@@ -156,6 +156,56 @@ TEST(Program, BadUsageExitsTwoWithOneLineThatNamesTheValue)
         EXPECT_EQ(std::count(r.err.begin(), r.err.end(), '\n'), 1) << arguments << ": " << r.err;
         EXPECT_TRUE(r.out.empty()) << arguments;
     }
+}
+
+// Warnings that say why stand above the error.
+TEST(Program, WarningsArePrintedBeforeTheErrorThatFollows)
+{
+    fs::path const cage = scratch() / "odd.obj";
+    std::string const square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 2\nl 1 5\n";
+    std::ofstream(cage) << square << "f 1 2 3\nf 1 2 4\n";
+    Result r = run("draw " + cage.string() + " --scheme acc");
+    EXPECT_EQ(r.status, 2);
+    std::size_t const line = r.err.find("odd.obj:6: 'l'"), unused = r.err.find("vertex 5"),
+                      error = r.err.find("acc draws quads only");
+    EXPECT_LT(line, unused) << r.err;
+    EXPECT_LT(unused, error) << r.err;
+    EXPECT_NE(error, std::string::npos) << r.err;
+    std::ofstream(cage) << square << "f 1 2 3 9\n";
+    r = run("info " + cage.string());
+    EXPECT_EQ(r.status, 2);
+    EXPECT_LT(r.err.find("odd.obj:6: 'l'"), r.err.find("odd.obj:7: vertex index is 9")) << r.err;
+    std::ofstream(cage) << square << "f 1 2 3 4\n";
+    r = run("draw " + cage.string() + " --displace nowhere.png");
+    EXPECT_LT(r.err.find("odd.obj:6: 'l'"), r.err.find("nowhere.png")) << r.err;
+    EXPECT_EQ(r.err.find("odd.obj:6: 'l'"), r.err.rfind("odd.obj:6: 'l'")) << "twice: " << r.err;
+}
+
+TEST(Program, ReadsAModelFromStandardInput)
+{
+    fs::path const cage = scratch() / "square.obj", out = scratch() / "in.ply";
+    std::ofstream(cage) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\np 1\nf 1 2 3 4\n";
+    for (std::string const& verb :
+         {std::string("draw - --size 16x16"), std::string("info -"),
+          std::string("check - --tess 2"), std::string("compare -"),
+          std::string("cost - --gpu gtx260"), "export - -o " + out.string()}) {
+        Result const file = run(verb.substr(0, verb.find('-')) + cage.string() +
+                                verb.substr(verb.find('-') + 1) + " --json -");
+        Result const in = run(verb + " --json -", cage);
+        ASSERT_EQ(in.status, file.status) << verb << ": " << in.err;
+        EXPECT_EQ(in.err, "warning: standard input:5: 'p': points are left out, only faces make a "
+                          "surface\n");
+        Json a = Json::parse(file.out), b = Json::parse(in.out);
+        EXPECT_EQ(b["inputs"][0]["name"], "-");
+        EXPECT_EQ(a["inputs"][0]["sha256"], b["inputs"][0]["sha256"]);
+        EXPECT_EQ(a["counters"], b["counters"]);
+    }
+    Result const bad = run("draw - --scheme pm", cage);
+    EXPECT_EQ(bad.status, 2);
+    EXPECT_NE(bad.err.find("standard input:6: "), std::string::npos) << bad.err;
+    Result const empty = run("draw -");
+    EXPECT_EQ(empty.status, 2);
+    EXPECT_NE(empty.err.find("standard input: is empty"), std::string::npos) << empty.err;
 }
 
 TEST(Program, LanesThatTheBuildLacksNameItsOption)
@@ -294,11 +344,12 @@ TEST(Program, FacesOfAnyKindAreDrawnWithWarningsThatCountThem)
     EXPECT_EQ(r.status, 0);
     EXPECT_TRUE(fs::exists(out));
     for (char const* warning :
-         {"warning: face 5 names a vertex twice in a row and loses the repetition\n",
-          "warning: face 8 has fewer than three corners at different vertices: left out\n",
-          "warning: vertex 11 is in no face: left out\n",
-          "warning: an edge at vertex 1 has more than two faces",
-          "warning: 2 vertices have several fans of faces: each gets a copy of them; the first is "
+         {"fin.obj:16: face 5 names a vertex twice in a row and loses the repetition\n",
+          "fin.obj:19: face 8 has fewer than three corners at different vertices: left out\n",
+          "fin.obj:11: vertex 11 is in no face: left out\n",
+          "fin.obj:1: an edge at vertex 1 has more than two faces",
+          "fin.obj:1: 2 vertices have several fans of faces: each gets a copy of them; the first "
+          "is "
           "vertex 1\n"})
         EXPECT_NE(r.err.find(warning), std::string::npos) << warning << r.err;
     Json const check = Json::parse(run("check " + cage.string() + " --json -").out);

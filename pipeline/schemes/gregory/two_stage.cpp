@@ -20,7 +20,7 @@ public:
                                             {{"Gregory quad", PatchClass::IrregularQuad}, 4},
                                             {{"Gregory triangle", PatchClass::Triangle}, 3}}),
           r_(float(parameters.number("r"))),
-          smooth_corners_(mesh().base().boundary == BoundaryRule::EdgeOnly)
+          smooth_corners_(mesh().base().smooth_corners())
     {
         for (double c : make_ring_constants(parameters.number("lambda")))
             constants_.push_back(float(c));
