@@ -73,7 +73,7 @@ int run(CheckRequest const& o)
     set_picture(job, o.picture, o.surface);
     WatertightSettings s;
     s.frame = job.frame;
-    s.parity = float(o.parity);
+    s.parity = float(job.placement.length_from_file(o.parity));
     s.rays = std::uint64_t(o.rays);
     s.list = 100000;
     PlantedMistake const mistake = mistake_of(o, *job.surface.mesh);
@@ -82,11 +82,11 @@ int run(CheckRequest const& o)
     PatchMesh const& patches = mistaken ? *mistaken : job.patches();
 
     Config& c = job.header.config;
-    c.emplace_back("tess_edge", name_of(s.frame.adaptive));
+    c.emplace_back("tess_edge", name_of(o.picture.tess_edge));
     c.emplace_back("width", std::int64_t(s.frame.width));
     c.emplace_back("height", std::int64_t(s.frame.height));
     c.emplace_back("rays", o.rays);
-    c.emplace_back("parity", double(s.parity));
+    c.emplace_back("parity", job.placement.length_to_file(s.parity));
     c.emplace_back("break", std::string(name_of(o.mistake)));
     if (mistaken) c.emplace_back("break_face", std::int64_t(mistake.face) + 1);
     ThreadPool const threads(o.run.threads);

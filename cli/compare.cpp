@@ -35,7 +35,8 @@ int run(CompareRequest const& o)
         error_row("normal", "closest point, limit to scheme", "radians", c.normal_from_limit),
         error_row("normal", "equal parameter", "radians", c.equal_normal)};
     write_result(
-        o.run.json, [&] { return compare_report(job.header, c.diagonal, rows); },
+        o.run.json,
+        [&] { return compare_report(job.header, job.placement.length_to_file(c.diagonal), rows); },
         compare_table(rows));
     return 0;
 }

@@ -78,7 +78,7 @@ std::string numbered(std::string const& path, std::size_t i)
     return p.string();
 }
 
-std::vector<double> as_doubles(glm::vec3 v)
+std::vector<double> as_doubles(glm::dvec3 v)
 {
     return {v.x, v.y, v.z};
 }
@@ -125,9 +125,21 @@ int run_error_view(DrawRequest const& o, Job& job)
              {{"distance / diagonal", position}, {"angle, radians", normal}}},
             o.output);
     write_result(
-        o.run.json, [&] { return compare_report(job.header, e.diagonal, rows); },
+        o.run.json,
+        [&] { return compare_report(job.header, job.placement.length_to_file(e.diagonal), rows); },
         compare_table(rows));
     return 0;
+}
+
+// A camera that its user placed and that sees nothing is a mistake; else the picture may be so.
+void expect_something(Frame const& frame, DrawRequest const& o, Job& job)
+{
+    if (frame.statistics.pipeline.PSInvocations > 0) return;
+    std::string const what = "no pixel is covered: the picture is empty";
+    if (o.picture.camera.is_placed() && o.cull == CullMode::None)
+        throw Error("--camera: " + what + "; 'auto' shows the whole model");
+    job.header.warnings.push_back(what);
+    print_warning(what);
 }
 
 int run(DrawRequest const& o)
@@ -146,13 +158,13 @@ int run(DrawRequest const& o)
     Config& c = job.header.config;
     c.emplace_back("width", std::int64_t(f.width));
     c.emplace_back("height", std::int64_t(f.height));
-    c.emplace_back("tess_edge", name_of(f.adaptive));
+    c.emplace_back("tess_edge", name_of(o.picture.tess_edge));
     c.emplace_back("view", name_of(o.view));
     c.emplace_back("cull", std::string(name_of(f.cull)));
     c.emplace_back("samples", std::int64_t(f.samples));
     c.emplace_back("color_format", std::string(info(f.color_format).name));
-    c.emplace_back("camera_eye", as_doubles(f.camera.eye));
-    c.emplace_back("camera_target", as_doubles(f.camera.target));
+    c.emplace_back("camera_eye", as_doubles(job.placement.to_file(f.camera.eye)));
+    c.emplace_back("camera_target", as_doubles(job.placement.to_file(f.camera.target)));
     c.emplace_back("camera_up", as_doubles(f.camera.up));
     c.emplace_back("camera_focal", double(f.camera.focal));
     if (job.poses.size() > 1) c.emplace_back("frames", std::int64_t(job.poses.size()));
@@ -170,7 +182,10 @@ int run(DrawRequest const& o)
             draw_frame(job.patches(), f, threads, frame, [&](std::size_t n, std::size_t all) {
                 bar(i * all + n, job.poses.size() * all);
             });
-        if (job.poses.size() == 1) break;
+        if (job.poses.size() == 1) {
+            expect_something(frame, o, job);
+            break;
+        }
         sequence.push_back({job.poses[i].phase, f.pose->bytes(),
                             ListStatistics{frame.statistics, frame.commands},
                             sha256_of_targets(frame.color, frame.depth)});

@@ -22,7 +22,7 @@ int run(ExportRequest const& o)
 {
     Job job = prepare(o.surface, "export");
     job.header.config.emplace_back("weld", o.weld);
-    MeshWriter writer(o.output, o.weld);
+    MeshWriter writer(o.output, o.weld, job.placement);
     ThreadPool const threads(o.run.threads);
     ProgressBar bar;
     Stopwatch const clock;

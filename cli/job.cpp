@@ -102,6 +102,7 @@ Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const
     Model model = open_model(o.model);
     job.load_seconds = load_clock.seconds();
     job.path = model.lines.file;
+    job.placement = model.placement;
     job.header.verb = verb;
     job.header.inputs = {{model.name, model.sha256}};
     job.header.warnings = std::move(model.warnings);
@@ -135,7 +136,11 @@ std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o, J
     auto const& [kind, path] = o.displace.heights;
     if (kind == Kind::None) return {};
     float const diagonal = diagonal_of(mesh.reference());
-    float const scale = o.displace.scale ? float(*o.displace.scale) : 0.01f * diagonal;
+    float const scale = o.displace.scale ? float(job.placement.length_from_file(*o.displace.scale))
+                                         : 0.01f * diagonal;
+    if (!std::isfinite(scale))
+        throw Error(fmt::format("--displace-scale is {}: too large for a model of diagonal {}",
+                                *o.displace.scale, job.placement.length_to_file(diagonal)));
     if (kind == Kind::Studs)
         return std::make_shared<Displacement>(Displacement::studs(diagonal / 16, scale));
     HeightImage const image = read_height_image(path);
@@ -166,22 +171,38 @@ std::vector<glm::vec3> points_to_show(Job const& job, AnimateRequest const& anim
     for (FramePose const& f : make_poses(animate, mesh))
         for (std::size_t v = 0; v < mesh.positions.size(); ++v)
             points.push_back(f.pose ? f.pose->posed(v, mesh.positions[v]) : mesh.positions[v]);
-    if (float const d = job.frame.displacement ? job.frame.displacement->scale() : 0; d > 0)
-        for (std::size_t i = 0, n = points.size(); i < n; ++i)
-            for (float s : {-d, d}) points.push_back(points[i] + glm::vec3(s));
     return points;
 }
 
-Camera make_camera(CameraRequest const& o, std::span<glm::vec3 const> points, float aspect)
+Camera make_camera(CameraRequest const& o, Job const& job, AnimateRequest const& animate,
+                   float aspect)
 {
-    Camera camera = frame_points(points, o.from, aspect);
-    if (o.target) camera.target = *o.target;
-    if (o.eye) camera.eye = *o.eye;
+    std::vector<glm::vec3> const points = points_to_show(job, animate);
+    float const reach = job.frame.displacement ? job.frame.displacement->reach() : 0;
+    Camera camera = frame_points(points, o.from, aspect, reach);
+    if (o.target) camera.target = job.placement.from_file(*o.target);
+    if (o.eye) camera.eye = job.placement.from_file(*o.eye);
     if (o.up) camera.up = *o.up;
     if (o.focal) camera.focal = *o.focal;
-    if (camera.eye == camera.target) throw Error("--camera: eye and target are the same point");
-    if (o.eye || o.target) fit_depth_range(camera, points);
+    try {
+        check_camera(camera);
+    } catch (Error const& e) {
+        throw Error(std::string("--camera: ") + e.what());
+    }
+    if (o.eye || o.target) fit_depth_range(camera, points, reach);
     return camera;
+}
+
+AdaptiveFactors factors_in_mesh(AdaptiveFactors factors, Placement const& placement)
+{
+    if (factors.kind != AdaptiveFactors::Kind::Distance) return factors;
+    double const given = factors.value;
+    factors.value = placement.length_from_file(given);
+    if (!(factors.value > 1e-30 && factors.value < 1e30))
+        throw Error(
+            fmt::format("--tess-edge: distance is {}, for this model it must be {:g} to {:g}",
+                        given, placement.length_to_file(1e-30), placement.length_to_file(1e30)));
+    return factors;
 }
 
 } // namespace
@@ -217,7 +238,8 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     if (o.vertex_cache) c.emplace_back("vertex_cache", name_of(*o.vertex_cache));
     if (o.direct3d10) c.emplace_back("direct3d", std::int64_t(10));
     c.emplace_back("displace", name_of(heights));
-    if (f.displacement) c.emplace_back("displace_scale", double(f.displacement->scale()));
+    if (f.displacement)
+        c.emplace_back("displace_scale", job.placement.length_to_file(f.displacement->scale()));
     c.emplace_back("animate", name_of(o.animate.motion));
     if (f.pose) c.emplace_back("phase", o.animate.phase);
     return job;
@@ -228,8 +250,8 @@ void set_picture(Job& job, PictureRequest const& o, SurfaceRequest const& surfac
     FrameSettings& f = job.frame;
     f.width = o.size.width;
     f.height = o.size.height;
-    f.adaptive = o.tess_edge;
-    f.camera = make_camera(o.camera, points_to_show(job, surface.animate), o.size.aspect());
+    f.adaptive = factors_in_mesh(o.tess_edge, job.placement);
+    f.camera = make_camera(o.camera, job, surface.animate, o.size.aspect());
 }
 
 void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double seconds)

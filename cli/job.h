@@ -67,7 +67,8 @@ struct Job {
     FrameSettings frame;
     std::vector<FramePose> poses; ///< one at least
     ReportHeader header;
-    std::string path; ///< of the model, for messages
+    std::string path;    ///< of the model, for messages
+    Placement placement; ///< of the mesh in the model's file
     double load_seconds = 0, build_seconds = 0;
 
     PatchMesh const& patches() const { return *surface.patches; }
@@ -83,7 +84,7 @@ Config config_of(ModelRequest const& o, Parameters const& parameters);
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb);
 /// With everything that verbs that tessellate share.
 Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make = build_scheme);
-/// Size, factors and camera, which shows the model as it moves through all frames.
+/// Size, factors and camera, which shows the model, displaced, as it moves through all frames.
 void set_picture(Job& job, PictureRequest const& o, SurfaceRequest const& surface);
 void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double seconds);
 ErrorRow error_row(char const* quantity, char const* measure, char const* unit,

@@ -47,6 +47,7 @@ struct BitsHash {
 struct MeshWriter::Impl {
     fs::path path, vertex_path, triangle_path;
     bool ply, weld;
+    Placement placement;
     std::ofstream vertex_file, triangle_file;
     std::uint64_t vertices = 0, triangles = 0;
     std::unordered_map<Bits, std::uint32_t, BitsHash> welded;
@@ -63,6 +64,19 @@ struct MeshWriter::Impl {
         ++triangles;
     }
 
+    glm::dvec3 in_file(Vertex const& v) const
+    {
+        return placement.to_file({v.position[0], v.position[1], v.position[2]});
+    }
+    /// A vertex's bytes in turn: its position as the file of a mesh has it, and the rest.
+    template <class Visit> void bytes_of(Vertex const& v, Visit const& visit) const
+    {
+        if (placement.is_identity()) return visit(&v, sizeof v);
+        glm::dvec3 const p = in_file(v);
+        for (int k = 0; k < 3; ++k) visit(&p[k], sizeof p[k]);
+        visit(&v.normal, sizeof v - sizeof v.position);
+    }
+
     template <class Record, class Visit> static void read(fs::path const& file, Visit const& visit)
     {
         std::ifstream in(file, std::ios::binary);
@@ -73,14 +87,16 @@ struct MeshWriter::Impl {
     void write_ply(std::ostream& out) const
     {
         out << fmt::format("ply\nformat binary_little_endian 1.0\ncomment tessemu\n"
-                           "element vertex {}\n"
-                           "property float x\nproperty float y\nproperty float z\n"
+                           "element vertex {1}\n"
+                           "property {0} x\nproperty {0} y\nproperty {0} z\n"
                            "property float nx\nproperty float ny\nproperty float nz\n"
                            "property float u\nproperty float v\nproperty int patch\n"
-                           "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-                           vertices, triangles);
+                           "element face {2}\nproperty list uchar int vertex_indices\nend_header\n",
+                           placement.is_identity() ? "float" : "double", vertices, triangles);
         read<Vertex>(vertex_path, [&](Vertex const& v) {
-            out.write(reinterpret_cast<char const*>(&v), sizeof v);
+            bytes_of(v, [&](void const* bytes, std::size_t n) {
+                out.write(static_cast<char const*>(bytes), std::streamsize(n));
+            });
         });
         read<Triangle>(triangle_path, [&](Triangle const& t) {
             out.put(3);
@@ -91,9 +107,14 @@ struct MeshWriter::Impl {
     void write_obj(std::ostream& out) const
     {
         read<Vertex>(vertex_path, [&](Vertex const& v) {
-            out << fmt::format("v {} {} {}\nvn {} {} {}\nvt {} {}\n", v.position[0], v.position[1],
-                               v.position[2], v.normal[0], v.normal[1], v.normal[2], v.uv[0],
-                               v.uv[1]);
+            if (placement.is_identity()) {
+                out << fmt::format("v {} {} {}\n", v.position[0], v.position[1], v.position[2]);
+            } else {
+                glm::dvec3 const p = in_file(v);
+                out << fmt::format("v {} {} {}\n", p.x, p.y, p.z);
+            }
+            out << fmt::format("vn {} {} {}\nvt {} {}\n", v.normal[0], v.normal[1], v.normal[2],
+                               v.uv[0], v.uv[1]);
         });
         std::uint32_t patch = 0xffffffffu;
         read<Triangle>(triangle_path, [&](Triangle const& t) {
@@ -104,7 +125,8 @@ struct MeshWriter::Impl {
     }
 };
 
-MeshWriter::MeshWriter(fs::path path, bool weld) : impl_(std::make_unique<Impl>())
+MeshWriter::MeshWriter(fs::path path, bool weld, Placement const& placement)
+    : impl_(std::make_unique<Impl>())
 {
     Impl& m = *impl_;
     if (path.extension() != ".obj" && path.extension() != ".ply")
@@ -113,6 +135,7 @@ MeshWriter::MeshWriter(fs::path path, bool weld) : impl_(std::make_unique<Impl>(
     m.path = path;
     m.ply = path.extension() == ".ply";
     m.weld = weld;
+    m.placement = placement;
     std::string const base = path.string() + ".tmp" + std::to_string(getpid());
     m.vertex_path = base + "v";
     m.triangle_path = base + "f";
@@ -196,7 +219,9 @@ std::uint64_t MeshWriter::triangles() const
 
 void MeshWriter::add_to_hash(Sha256& hash) const
 {
-    Impl::read<Vertex>(impl_->vertex_path, [&](Vertex const& v) { hash.add(&v, sizeof v); });
+    Impl::read<Vertex>(impl_->vertex_path, [&](Vertex const& v) {
+        impl_->bytes_of(v, [&](void const* bytes, std::size_t n) { hash.add(bytes, n); });
+    });
     Impl::read<Triangle>(impl_->triangle_path,
                          [&](Triangle const& t) { hash.add(t.v, sizeof t.v); });
 }

@@ -52,6 +52,7 @@ Model load_model(std::string const& path_or_name, WarningSink const& sink)
     ObjFile obj = read_obj(text, standard_input ? kStandardInput : path_or_name, sink);
     out.name = std::filesystem::path(path_or_name).filename().string();
     out.mesh = std::move(obj.mesh);
+    out.placement = obj.placement;
     out.mesh.name = out.name;
     out.lines = std::move(obj.lines);
     out.warnings = std::move(obj.warnings);

@@ -5,7 +5,12 @@
 
 #include <fmt/format.h>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <bit>
 #include <charconv>
+#include <climits>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -136,6 +141,12 @@ template <class Number> bool is_number(std::string_view s, Number& out)
     return read_number(s, out) == Reading::Number;
 }
 
+// Whether a double lies in the middle between two floats, where rounding twice may go wrong.
+bool is_between_floats(double x)
+{
+    return (std::bit_cast<std::uint64_t>(x) & 0x1fffffff) == 0x10000000;
+}
+
 // A word of the file in a message.
 std::string shown(std::string_view s)
 {
@@ -217,6 +228,37 @@ private:
     std::map<std::string, std::size_t> kinds_;
 };
 
+// How a file writes the coordinates of its vertices.
+struct WrittenDigits {
+    int place[3] = {INT_MAX, INT_MAX, INT_MAX}; ///< power of ten of the finest digit, by axis
+    int most = 0;                               ///< digits of a number, without leading zeros
+};
+
+WrittenDigits digits_of(std::string_view text)
+{
+    WrittenDigits out;
+    for (Statements s(text); s.next();) {
+        if (meaning_of(s.words[0]) != Meaning::Vertex) continue;
+        s.join();
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::string_view const word = s.words[k + 1];
+            std::size_t const e = std::min(word.find_first_of("eE"), word.size());
+            int place = 0, digits = 0;
+            if (e < word.size()) is_number(word.substr(e + 1), place);
+            bool after_point = false;
+            for (char c : word.substr(0, e)) {
+                if (c == '.') after_point = true;
+                if (c < '0' || c > '9') continue;
+                if (after_point) --place;
+                if (digits || c != '0') ++digits;
+            }
+            out.place[k] = std::min(out.place[k], place);
+            out.most = std::max(out.most, digits);
+        }
+    }
+    return out;
+}
+
 class ObjReader {
 public:
     ObjReader(std::string const& name, Notes& notes) : name_(name), notes_(notes) {}
@@ -240,7 +282,8 @@ public:
         for (Tag const& t : tags_) apply(t);
         finish_tags();
         mesh().name = out_.lines.file = name_;
-        mesh().positions.assign(positions_.begin(), positions_.end());
+        place();
+        if (out_.placement.is_moved()) warn_of_digits(digits_of(text));
         return std::move(out_);
     }
 
@@ -313,8 +356,7 @@ private:
     }
     [[noreturn]] void refuse_size(std::string_view word, int line) const
     {
-        fail(line, fmt::format("coordinate is {}, the limit is {}: normals would overflow",
-                               shown(word), kMaxCoordinate));
+        fail(line, fmt::format("coordinate is {}, the limit is {}", shown(word), kMaxCoordinate));
     }
 
     void vertex(std::vector<std::string_view> const& words, int line)
@@ -327,8 +369,13 @@ private:
             double& out = x[std::min(i, std::size_t(7))];
             Reading const reading = read_number(words[i + 1], out);
             if (reading == Reading::NoNumber) refuse_coordinate(words[i + 1], line);
-            if (i < 3 && (reading == Reading::TooLarge || std::abs(out) > kMaxCoordinate))
+            if (i >= 3) continue;
+            if (reading == Reading::TooLarge || std::abs(out) > kMaxCoordinate)
                 refuse_size(words[i + 1], line);
+            float nearest = 0;
+            if (is_between_floats(out) && is_number(words[i + 1], nearest) &&
+                std::isnormal(nearest))
+                in_between_.push_back({positions_.size(), int(i), nearest});
         }
         positions_.emplace_back(x[0], x[1], x[2]);
         out_.lines.vertices.push_back(line);
@@ -350,12 +397,12 @@ private:
         float x[3] = {};
         bool good = words.size() > 1 && words.size() <= 4;
         for (std::size_t i = 1; good && i < words.size(); ++i)
-            good = is_number(words[i], x[i - 1]) && std::abs(x[i - 1]) <= kMaxCoordinate;
+            good = is_number(words[i], x[i - 1]) && std::abs(x[i - 1]) <= kMaxTextureCoordinate;
         if (!good) {
             notes_.count("coordinates", line, [&] {
                 return fmt::format("texture coordinates are not one to three finite numbers of at "
                                    "most {}: the mesh gets none",
-                                   kMaxCoordinate);
+                                   kMaxTextureCoordinate);
             });
             coordinates_lost_ = true;
         }
@@ -630,6 +677,72 @@ private:
         holes.erase(std::unique(holes.begin(), holes.end()), holes.end());
     }
 
+    void place()
+    {
+        std::vector<char> used(positions_.size());
+        for (std::uint32_t v : mesh().face_vertices) used[v] = 1;
+        std::vector<glm::dvec3> points;
+        for (std::size_t v = 0; v < used.size(); ++v)
+            if (used[v]) points.push_back(positions_[v]);
+        Placement& placement = out_.placement;
+        try {
+            placement = Placement(points);
+        } catch (Error const& e) {
+            throw FormatError(name_, 0, e.what());
+        }
+        for (glm::dvec3 const& p : positions_) mesh().positions.push_back(placement.from_file(p));
+        if (!placement.is_moved())
+            for (InBetween const& i : in_between_)
+                mesh().positions[i.vertex][i.axis] =
+                    float(placement.length_from_file(double(i.nearest)));
+        for (glm::vec3& p : mesh().positions) // vertices of no face may lie anywhere
+            p = clamp(p, -kFarthest, kFarthest);
+    }
+
+    void warn_of_digits(WrittenDigits const& digits)
+    {
+        constexpr int kAllOfADouble = 15;
+        constexpr double kBad = 1e-3;
+        double rounding = 0;
+        glm::dvec3 const shift = out_.placement.to_file(glm::dvec3(0));
+        for (int k = 0; k < 3; ++k) {
+            if (shift[k] == 0) continue; // near the origin numbers are as they should be
+            double most = 0;
+            for (std::uint32_t v : mesh().face_vertices)
+                most = std::max(most, std::abs(positions_[v][k]));
+            int exponent = 0;
+            std::frexp(most, &exponent);
+            double half = std::ldexp(1.0, exponent - 54);
+            if (double written = 0; digits.most < kAllOfADouble &&
+                                    is_number(fmt::format("5e{}", digits.place[k] - 1), written))
+                half = std::max(half, written);
+            rounding = std::max(rounding, half);
+        }
+        double shortest = INFINITY;
+        std::uint32_t a = 0, b = 0;
+        for (std::size_t f = 0; f < mesh().faces(); ++f) {
+            auto const v = mesh().face(f);
+            for (std::size_t i = 0; i < v.size(); ++i) {
+                std::uint32_t const next = v[(i + 1) % v.size()];
+                double const along = length(positions_[next] - positions_[v[i]]);
+                if (along > 0 && along < shortest) shortest = along, a = v[i], b = next;
+            }
+        }
+        if (!(rounding > kBad * shortest)) return;
+        notes_.add(out_.lines.vertices[a],
+                   fmt::format("so far from the origin the file's coordinates are good to {:g}, "
+                               "{:.2g} % of the edge between vertices {} and {}: more digits, or "
+                               "a mesh nearer to the origin, would keep its shape",
+                               rounding, 100 * rounding / shortest, a + 1, b + 1));
+    }
+
+    struct InBetween {
+        std::size_t vertex;
+        int axis;
+        float nearest; ///< to the number as it is written
+    };
+
+    static constexpr float kFarthest = 1e9f;
     static constexpr std::uint32_t kNone = 0xffffffffu;
     static constexpr float kInfinitelySharp = 10;
     static constexpr std::int64_t kLinear = 5;
@@ -638,6 +751,7 @@ private:
     Notes& notes_;
     ObjFile out_;
     std::vector<glm::dvec3> positions_;
+    std::vector<InBetween> in_between_;
     std::vector<glm::vec2> coordinates_;
     std::size_t normals_ = 0;
     ForwardIndices vertex_indices_, coordinate_indices_, normal_indices_;

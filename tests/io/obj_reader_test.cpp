@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cmath>
+
 namespace tessemu {
 namespace {
 
@@ -72,7 +74,8 @@ TEST(ObjReader, ErrorsNameFileLineValueAndLimit)
               "file.obj:1: coordinate '0x1' is not a finite number");
     EXPECT_EQ(message_of(kCube + "f\n"), "file.obj:15: face has no vertices");
     EXPECT_EQ(message_of("v 1 2 3\n"), "file.obj: holds no face (1 vertices)");
-    EXPECT_NE(message_of("v 1 2 1e30\n" + kCube).find("limit is 1000000000"), std::string::npos);
+    EXPECT_EQ(message_of("v 1 2 1e101\n" + kCube),
+              "file.obj:1: coordinate is 1e101, the limit is 1e+100");
 }
 
 // What is to be done with such faces is make_manifold's.
@@ -118,12 +121,29 @@ RC_GTEST_PROP(ObjReader, AnyTextEitherReadsOrThrowsAFormatError, ())
 
 TEST(ObjReader, NumbersRoundAsTheNearestFloat)
 {
-    ObjFile const f =
-        read_obj("v 0.1 1.17549435e-38 16777217\nv 0.3 -2.5 1e-3\nv 3.4028 7 8\nf 1 2 3\n", "a");
+    // The middle between 1 and the next float, and a little above it: a double does not see that.
+    std::string const middle = "1.000000059604644775390625";
+    ObjFile const f = read_obj("v 0.1 1.17549435e-38 " + middle + "\nv 0.3 -2.5 1e-3\nv " + middle +
+                                   "0000000000001 7 8\nf 1 2 3\n",
+                               "a");
     EXPECT_EQ(f.mesh.positions[0].x, 0.1f);
-    EXPECT_EQ(f.mesh.positions[0].z, 16777216.0f);
+    EXPECT_EQ(f.mesh.positions[0].y, 1.17549435e-38f);
+    EXPECT_EQ(f.mesh.positions[0].z, 1.0f);
     EXPECT_EQ(f.mesh.positions[1].x, 0.3f);
     EXPECT_EQ(f.mesh.positions[1].z, 1e-3f);
+    EXPECT_EQ(f.mesh.positions[2].x, std::nextafter(1.0f, 2.0f));
+}
+
+TEST(ObjReader, PlacesAMeshByTheVerticesOfItsFaces)
+{
+    ObjFile const f = read_obj("v 1000001 0 0\nv 1000002.25 0 0\nv 1000001 1 0\nv 0 1e90 0\n"
+                               "f 1 2 3\n",
+                               "a");
+    EXPECT_TRUE(f.placement.is_moved());
+    auto const& p = f.mesh.positions;
+    EXPECT_EQ(p[1].x - p[0].x, 1.25f);
+    EXPECT_EQ(f.placement.to_file(p[0]), glm::dvec3(1000001, 0, 0));
+    for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::isfinite(p[3][k]));
 }
 
 TEST(ObjReader, ReadsTextureCoordinatesOfFaceCorners)
