@@ -132,10 +132,10 @@ int run_error_view(DrawRequest const& o, Job& job)
 }
 
 // A camera that its user placed and that sees nothing is a mistake; else the picture may be so.
-void expect_something(Frame const& frame, DrawRequest const& o, Job& job)
+void expect_something(bool covered, DrawRequest const& o, Job& job)
 {
-    if (frame.statistics.pipeline.PSInvocations > 0) return;
-    std::string const what = "no pixel is covered: the picture is empty";
+    if (covered) return;
+    std::string const what = "no pixel is covered: there is nothing to see";
     if (o.picture.camera.is_placed() && o.cull == CullMode::None)
         throw Error("--camera: " + what + "; 'auto' shows the whole model");
     job.header.warnings.push_back(what);
@@ -174,6 +174,7 @@ int run(DrawRequest const& o)
     Stopwatch const clock;
     Frame frame(f);
     std::vector<SequenceFrame> sequence;
+    bool covered = false;
     for (std::size_t i = 0; i < job.poses.size(); ++i) {
         f.pose = job.poses[i].pose;
         if (cage)
@@ -182,16 +183,15 @@ int run(DrawRequest const& o)
             draw_frame(job.patches(), f, threads, frame, [&](std::size_t n, std::size_t all) {
                 bar(i * all + n, job.poses.size() * all);
             });
-        if (job.poses.size() == 1) {
-            expect_something(frame, o, job);
-            break;
-        }
+        covered = covered || frame.statistics.pipeline.PSInvocations > 0;
+        if (job.poses.size() == 1) break;
         sequence.push_back({job.poses[i].phase, f.pose->bytes(),
                             ListStatistics{frame.statistics, frame.commands},
                             sha256_of_targets(frame.color, frame.depth)});
         if (!o.output.empty()) write_image(frame.color, numbered(o.output, i));
     }
     bar.clear();
+    expect_something(covered, o, job);
     add_run(job.header, job, threads, clock.seconds());
     if (!sequence.empty()) {
         write_result(

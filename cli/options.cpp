@@ -162,6 +162,14 @@ glm::vec3 parse_direction(std::string const& key, std::string const& text,
             float(std::ldexp(d.z, -exponent))};
 }
 
+float parse_focal(std::string const& text, std::string const& option)
+{
+    float const focal = float(finite_number(text, option));
+    if (!(focal > 0 && std::isfinite(focal)))
+        throw Error(option + " is " + text + ", it must be above 0, in single precision");
+    return focal;
+}
+
 CameraRequest parse_camera(std::string const& text, std::string const& option)
 {
     CameraRequest out;
@@ -179,13 +187,11 @@ CameraRequest parse_camera(std::string const& text, std::string const& option)
         else if (key == "up")
             out.up = parse_direction(key, value, option);
         else if (key == "focal")
-            out.focal = float(finite_number(value, option + " focal"));
+            out.focal = parse_focal(value, option + ": focal");
         else
             throw Error(option + ": '" + part +
                         "' is not auto, from=, eye=, target=, up= or focal=");
     }
-    if (out.focal && !(*out.focal > 0 && std::isfinite(*out.focal)))
-        throw Error(option + ": focal is " + std::to_string(*out.focal) + ", it must be above 0");
     return out;
 }
 
