@@ -27,7 +27,7 @@ std::pair<Vec, Vec> limit(Topology const& t, std::vector<Vec> const& x, std::uin
     };
     if (t.is_boundary(v)) {
         Vec const first = edge(0), last = x[t.vertex_of(t.previous(ring.back()))];
-        bool const fixed = n == 1 && t.mesh().boundary != BoundaryRule::EdgeOnly;
+        bool const fixed = n == 1 && !t.mesh().smooth_corners();
         Vec const p = fixed ? x[v] : (first + 4.0 * x[v] + last) / 6.0;
         if (n == 1) return {p, cross(first - x[v], last - x[v])};
         double const co = cos_pi(1, n), s = sin_pi(1, n);

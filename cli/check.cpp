@@ -52,11 +52,12 @@ PlantedMistake mistake_of(CheckRequest const& o, RefinedMesh const& mesh)
 }
 
 // How to close a surface that looks closed and is not.
-std::string join_hint(Seams const& seams)
+std::string join_hint(Seams const& seams, Placement const& placement)
 {
     if (seams.edges == 0) return "";
     // Two digits that are no less.
-    std::string const apart = seams.apart > 0 ? fmt::format("{:.1e}", 1.06 * seams.apart) : "0";
+    double const distance = placement.length_to_file(seams.apart);
+    std::string const apart = distance > 0 ? fmt::format("{:.1e}", 1.06 * distance) : "0";
     return fmt::format("{} open edges lie on others with other vertices: --join DISTANCE joins "
                        "them, here --join {} or more",
                        seams.edges, apart);
@@ -90,11 +91,12 @@ int run(CheckRequest const& o)
     if (picture) picture_format(*picture); // or refuses
     Job job = prepare(o.surface, "check");
     set_picture(job, o.picture, o.surface);
-    std::string const hint = join_hint(find_seams(job.surface.mesh->base_topology()));
+    std::string const hint =
+        join_hint(find_seams(job.surface.mesh->base_topology()), job.placement);
     if (!hint.empty()) job.header.warnings.push_back(hint);
     WatertightSettings s;
     s.frame = job.frame;
-    s.parity = float(o.parity);
+    s.parity = float(job.placement.length_from_file(o.parity));
     s.rays = std::uint64_t(o.rays);
     s.list = 100000;
     PlantedMistake const mistake = mistake_of(o, *job.surface.mesh);
@@ -103,11 +105,11 @@ int run(CheckRequest const& o)
     PatchMesh const& patches = mistaken ? *mistaken : job.patches();
 
     Config& c = job.header.config;
-    c.emplace_back("tess_edge", name_of(s.frame.adaptive));
+    c.emplace_back("tess_edge", name_of(o.picture.tess_edge));
     c.emplace_back("width", std::int64_t(s.frame.width));
     c.emplace_back("height", std::int64_t(s.frame.height));
     c.emplace_back("rays", o.rays);
-    c.emplace_back("parity", double(s.parity));
+    c.emplace_back("parity", job.placement.length_to_file(s.parity));
     c.emplace_back("break", std::string(name_of(o.mistake)));
     if (mistaken)
         c.emplace_back("break_face",
@@ -123,7 +125,7 @@ int run(CheckRequest const& o)
     for (CheckedVerdict const& v : verdicts) rows.push_back(row_of(v));
     if (picture) write_image(draw_cracks(patches, s, verdicts, threads), *picture);
     out.finish([&] { return check_report(job.header, rows); }, check_table(rows, 3));
-    if (!hint.empty() && any_checked(verdicts)) print_warnings({hint}); // else an error says so
+    if (!hint.empty() && any_checked(verdicts)) print_warning(hint); // else an error says so
     if (!all_hold(verdicts)) return 1;
     std::string const& model = o.surface.model.model;
     if (std::string const why = why_not_found(o.mistake, verdicts); !why.empty())

@@ -35,7 +35,8 @@ int run(CompareRequest const& o)
         error_row("normal", "closest point, scheme to limit", "radians", c.normal_to_limit),
         error_row("normal", "closest point, limit to scheme", "radians", c.normal_from_limit),
         error_row("normal", "equal parameter", "radians", c.equal_normal)};
-    out.finish([&] { return compare_report(job.header, c.diagonal, rows); }, compare_table(rows));
+    double const diagonal = job.placement.length_to_file(c.diagonal);
+    out.finish([&] { return compare_report(job.header, diagonal, rows); }, compare_table(rows));
     return 0;
 }
 

@@ -38,7 +38,7 @@ int run(CostRequest o)
     FrameSettings const& f = job.frame;
     Config& c = job.header.config;
     c.emplace_back("gpu", std::filesystem::path(o.gpu).filename().string());
-    c.emplace_back("tess_edge", name_of(f.adaptive));
+    c.emplace_back("tess_edge", name_of(o.picture.tess_edge));
     c.emplace_back("geometry_only", o.geometry_only);
     if (!o.geometry_only) {
         c.emplace_back("width", std::int64_t(f.width));

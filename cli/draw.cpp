@@ -94,7 +94,7 @@ std::vector<OutputFile*> pictures_of(DrawRequest const& o, RunOutput& out)
     return files;
 }
 
-std::vector<double> as_doubles(glm::vec3 v)
+std::vector<double> as_doubles(glm::dvec3 v)
 {
     return {v.x, v.y, v.z};
 }
@@ -119,7 +119,7 @@ int run_error_view(DrawRequest const& o, Job& job, OutputFile* picture, RunOutpu
     Stopwatch const clock;
     EqualParameterErrors const e = equal_parameter_errors(job.patches(), f, o.level, threads);
     if (e.triangles.empty())
-        throw Error(o.surface.model.model + ": --view error needs quads, the mesh has none");
+        throw Error(job.path + ": --view error needs quads, the mesh has none");
     double const position =
         o.error_max ? o.error_max->position : quantile(e.distance, e.weight, 0.99);
     double const normal = o.error_max ? o.error_max->angle : quantile(e.angle, e.weight, 0.99);
@@ -140,8 +140,20 @@ int run_error_view(DrawRequest const& o, Job& job, OutputFile* picture, RunOutpu
              {{&view.position, scheme + ": position"}, {&view.normal, scheme + ": normal"}},
              {{"distance / diagonal", position}, {"angle, radians", normal}}},
             *picture);
-    out.finish([&] { return compare_report(job.header, e.diagonal, rows); }, compare_table(rows));
+    double const diagonal = job.placement.length_to_file(e.diagonal);
+    out.finish([&] { return compare_report(job.header, diagonal, rows); }, compare_table(rows));
     return 0;
+}
+
+// A camera that its user placed and that sees nothing is a mistake; else the picture may be so.
+void expect_something(bool covered, DrawRequest const& o, Job& job)
+{
+    if (covered) return;
+    std::string const what = "no pixel is covered: there is nothing to see";
+    if (o.picture.camera.is_placed() && o.cull == CullMode::None)
+        throw Error("--camera: " + what + "; 'auto' shows the whole model");
+    job.header.warnings.push_back(what);
+    print_warning(what);
 }
 
 int run(DrawRequest const& o)
@@ -163,13 +175,13 @@ int run(DrawRequest const& o)
     Config& c = job.header.config;
     c.emplace_back("width", std::int64_t(f.width));
     c.emplace_back("height", std::int64_t(f.height));
-    c.emplace_back("tess_edge", name_of(f.adaptive));
+    c.emplace_back("tess_edge", name_of(o.picture.tess_edge));
     c.emplace_back("view", name_of(o.view));
     c.emplace_back("cull", std::string(name_of(f.cull)));
     c.emplace_back("samples", std::int64_t(f.samples));
     c.emplace_back("color_format", std::string(info(f.color_format).name));
-    c.emplace_back("camera_eye", as_doubles(f.camera.eye));
-    c.emplace_back("camera_target", as_doubles(f.camera.target));
+    c.emplace_back("camera_eye", as_doubles(job.placement.to_file(f.camera.eye)));
+    c.emplace_back("camera_target", as_doubles(job.placement.to_file(f.camera.target)));
     c.emplace_back("camera_up", as_doubles(f.camera.up));
     c.emplace_back("camera_focal", double(f.camera.focal));
     if (job.poses.size() > 1) c.emplace_back("frames", std::int64_t(job.poses.size()));
@@ -179,6 +191,7 @@ int run(DrawRequest const& o)
     Stopwatch const clock;
     Frame frame(f);
     std::vector<SequenceFrame> sequence;
+    bool covered = false;
     for (std::size_t i = 0; i < job.poses.size(); ++i) {
         f.pose = job.poses[i].pose;
         if (cage)
@@ -187,6 +200,7 @@ int run(DrawRequest const& o)
             draw_frame(job.patches(), f, threads, frame, [&](std::size_t n, std::size_t all) {
                 bar(i * all + n, job.poses.size() * all);
             });
+        covered = covered || frame.statistics.pipeline.PSInvocations > 0;
         if (job.poses.size() == 1) break;
         sequence.push_back({job.poses[i].phase, f.pose->bytes(),
                             ListStatistics{frame.statistics, frame.commands},
@@ -197,6 +211,7 @@ int run(DrawRequest const& o)
         }
     }
     bar.clear();
+    expect_something(covered, o, job);
     add_run(job.header, job, threads, clock.seconds());
     if (!sequence.empty()) {
         out.finish([&] { return sequence_report(job.header, sequence); }, sequence_table(sequence));
@@ -211,7 +226,7 @@ void warn_of_unused(Verb const& verb, std::string const& view,
                     std::initializer_list<char const*> options)
 {
     for (char const* option : options)
-        if (verb.given(option)) print_warnings({view + " does not use " + option});
+        if (verb.given(option)) print_warning(view + " does not use " + option);
 }
 
 } // namespace

@@ -25,7 +25,7 @@ int run(ExportRequest const& o)
     mesh_format(file); // or refuses
     Job job = prepare(o.surface, "export");
     job.header.config.emplace_back("weld", o.weld);
-    MeshWriter writer(file, o.weld);
+    MeshWriter writer(file, o.weld, job.placement);
     ThreadPool const threads(o.run.threads);
     ProgressBar bar;
     Stopwatch const clock;

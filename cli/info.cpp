@@ -20,8 +20,7 @@ struct InfoRequest {
 int run(InfoRequest const& o)
 {
     RunOutput out(o.json);
-    Model model = load_model(o.model.model);
-    print_warnings(model.warnings);
+    Model model = open_model(o.model.model);
     SchemeInfo const info = o.model.scheme->info();
     ReportHeader header{"info",
                         config_of(o.model, resolve_parameters(info, o.model.build.set)),
@@ -33,7 +32,7 @@ int run(InfoRequest const& o)
     try {
         MeshRepairs repairs;
         if (auto const& distance = o.model.build.join) {
-            JoinedMesh joined = join_vertices(std::move(model.mesh), *distance);
+            JoinedMesh joined = join_vertices(std::move(model.mesh), *distance, model.placement);
             model.mesh = std::move(joined.mesh);
             more = in_words(joined.join, *distance);
         }
@@ -41,26 +40,29 @@ int run(InfoRequest const& o)
             ManifoldMesh manifold = make_manifold(std::move(model.mesh));
             model.mesh = std::move(manifold.mesh);
             repairs = manifold.repairs;
-            std::vector<std::string> const lines = in_words(repairs);
-            more.insert(more.end(), lines.begin(), lines.end());
+            std::vector<std::string> const repaired = in_words(repairs, model.lines);
+            more.insert(more.end(), repaired.begin(), repaired.end());
+            for (std::string const& w : more) print_warning(w);
         }
         summary = summarize(Topology(model.mesh));
         summary.vertices += repairs.unused.number;
         summary.unused_vertices += repairs.unused.number;
     } catch (MeshError const& e) {
-        throw FormatError(model.path, model.line_of_face(e.face), e.what());
+        throw FormatError(model.lines.file, model.lines.line_of_face(e.face), e.what());
     }
     // A mesh that the scheme refuses still has figures: the refusal becomes a warning.
     std::vector<PatchCount> patches;
+    std::string const path = model.lines.file;
     try {
         SchemeOnMesh const surface = build(std::move(model), o.model);
         patches = surface.patches->patch_counts();
         more.insert(more.end(), surface.warnings.begin(), surface.warnings.end());
     } catch (FormatError const& e) {
         more.push_back(info.name + " cannot draw this mesh: " + e.what());
+        print_warning(more.back());
     }
-    print_warnings(more);
     header.warnings.insert(header.warnings.end(), more.begin(), more.end());
+    header.warnings = without_folder(std::move(header.warnings), path);
     out.finish([&] { return info_report(header, summary, patches); }, info_table(summary, patches));
     return 0;
 }

@@ -33,19 +33,36 @@ void ProgressBar::operator()(std::size_t done, std::size_t all)
     shown_ = true;
 }
 
-void print_warnings(std::vector<std::string> const& warnings)
+void print_warning(std::string const& warning)
 {
-    for (std::string const& w : warnings) print_message("warning: " + w + "\n");
+    print_message("warning: " + warning + "\n");
+}
+
+Model open_model(std::string const& model)
+{
+    return load_model(model, print_warning);
+}
+
+std::vector<std::string> without_folder(std::vector<std::string> warnings, std::string const& path)
+{
+    std::string const folder = path.substr(0, path.find_last_of('/') + 1);
+    for (std::string& w : warnings)
+        if (!folder.empty() && w.starts_with(folder)) w.erase(0, folder.size());
+    return warnings;
 }
 
 SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make)
 {
+    BuildOptions options = o.build;
+    options.placement = model.placement;
+    options.lines = std::move(model.lines);
+    options.warn = print_warning;
     try {
-        return make(*o.scheme, std::move(model.mesh), o.build);
+        return make(*o.scheme, std::move(model.mesh), options);
     } catch (MeshError const& e) {
-        throw FormatError(model.path, model.line_of_face(e.face), e.what());
+        throw FormatError(options.lines.file, options.lines.line_of_face(e.face), e.what());
     } catch (LimitError const& e) {
-        throw FormatError(model.path, 0, e.what());
+        throw FormatError(options.lines.file, 0, e.what());
     }
 }
 
@@ -70,8 +87,10 @@ Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const
     job.frame.true_normals = shading.true_normals;
     job.poses.emplace_back();
     Stopwatch const load_clock;
-    Model model = load_model(o.model);
+    Model model = open_model(o.model);
     job.load_seconds = load_clock.seconds();
+    job.path = model.lines.file;
+    job.placement = model.placement;
     job.header.verb = verb;
     job.header.inputs = {{model.name, model.sha256}};
     job.header.warnings = std::move(model.warnings);
@@ -80,6 +99,7 @@ Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const
     job.build_seconds = build_clock.seconds();
     auto const& more = job.surface.warnings;
     job.header.warnings.insert(job.header.warnings.end(), more.begin(), more.end());
+    job.header.warnings = without_folder(std::move(job.header.warnings), job.path);
     job.header.config = config_of(o, job.surface.parameters);
     return job;
 }
@@ -90,15 +110,6 @@ void add_config(Config& c, ShadingRequest const& o)
     c.emplace_back("contraction", name_of(o.products));
 }
 
-// Warnings of the file carry its path; a result must not.
-void report_warnings(ReportHeader& header, std::string const& path)
-{
-    print_warnings(header.warnings);
-    std::string const prefix = path.substr(0, path.find_last_of('/') + 1);
-    for (std::string& w : header.warnings)
-        if (!prefix.empty() && w.starts_with(prefix)) w.erase(0, prefix.size());
-}
-
 float diagonal_of(ControlMesh const& mesh)
 {
     glm::vec3 low(INFINITY), high(-INFINITY);
@@ -106,21 +117,25 @@ float diagonal_of(ControlMesh const& mesh)
     return glm::length(high - low);
 }
 
-std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o,
-                                                      RefinedMesh const& mesh)
+std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o, Job const& job)
 {
+    RefinedMesh const& mesh = *job.surface.mesh;
     using Kind = DisplaceRequest::Heights::Kind;
     auto const& [kind, path] = o.displace.heights;
     if (kind == Kind::None) return {};
     float const diagonal = diagonal_of(mesh.reference());
-    float const scale = o.displace.scale ? float(*o.displace.scale) : 0.01f * diagonal;
+    float const scale = o.displace.scale ? float(job.placement.length_from_file(*o.displace.scale))
+                                         : 0.01f * diagonal;
+    if (!std::isfinite(scale))
+        throw Error(fmt::format("--displace-scale is {}: too large for a model of diagonal {}",
+                                *o.displace.scale, job.placement.length_to_file(diagonal)));
     if (kind == Kind::Studs)
         return std::make_shared<Displacement>(Displacement::studs(diagonal / 16, scale));
     HeightImage const image = read_height_image(path);
     try {
         return std::make_shared<Displacement>(mesh.base_topology(), image, scale);
     } catch (Error const& e) {
-        throw Error(o.model.model + ": " + e.what());
+        throw Error(job.path + ": " + e.what());
     }
 }
 
@@ -144,22 +159,38 @@ std::vector<glm::vec3> points_to_show(Job const& job, AnimateRequest const& anim
     for (FramePose const& f : make_poses(animate, mesh))
         for (std::size_t v = 0; v < mesh.positions.size(); ++v)
             points.push_back(f.pose ? f.pose->posed(v, mesh.positions[v]) : mesh.positions[v]);
-    if (float const d = job.frame.displacement ? job.frame.displacement->scale() : 0; d > 0)
-        for (std::size_t i = 0, n = points.size(); i < n; ++i)
-            for (float s : {-d, d}) points.push_back(points[i] + glm::vec3(s));
     return points;
 }
 
-Camera make_camera(CameraRequest const& o, std::span<glm::vec3 const> points, float aspect)
+Camera make_camera(CameraRequest const& o, Job const& job, AnimateRequest const& animate,
+                   float aspect)
 {
-    Camera camera = frame_points(points, o.from, aspect);
-    if (o.target) camera.target = *o.target;
-    if (o.eye) camera.eye = *o.eye;
+    std::vector<glm::vec3> const points = points_to_show(job, animate);
+    float const reach = job.frame.displacement ? job.frame.displacement->reach() : 0;
+    Camera camera = frame_points(points, o.from, aspect, reach);
+    if (o.target) camera.target = job.placement.from_file(*o.target);
+    if (o.eye) camera.eye = job.placement.from_file(*o.eye);
     if (o.up) camera.up = *o.up;
     if (o.focal) camera.focal = *o.focal;
-    if (camera.eye == camera.target) throw Error("--camera: eye and target are the same point");
-    if (o.eye || o.target) fit_depth_range(camera, points);
+    try {
+        check_camera(camera);
+    } catch (Error const& e) {
+        throw Error(std::string("--camera: ") + e.what());
+    }
+    if (o.eye || o.target) fit_depth_range(camera, points, reach);
     return camera;
+}
+
+AdaptiveFactors factors_in_mesh(AdaptiveFactors factors, Placement const& placement)
+{
+    if (factors.kind != AdaptiveFactors::Kind::Distance) return factors;
+    double const given = factors.value;
+    factors.value = placement.length_from_file(given);
+    if (!(factors.value > 1e-30 && factors.value < 1e30))
+        throw Error(
+            fmt::format("--tess-edge: distance is {}, for this model it must be {:g} to {:g}",
+                        given, placement.length_to_file(1e-30), placement.length_to_file(1e30)));
+    return factors;
 }
 
 } // namespace
@@ -168,7 +199,6 @@ Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string co
 {
     Job job = open(o, shading, verb, build_scheme);
     add_config(job.header.config, shading);
-    report_warnings(job.header, o.model);
     return job;
 }
 
@@ -181,7 +211,7 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     f.tess_factor = float(o.tess);
     if (o.vertex_cache) f.vertex_cache = *o.vertex_cache;
     f.direct3d10 = o.direct3d10;
-    f.displacement = make_displacement(o, *job.surface.mesh);
+    f.displacement = make_displacement(o, job);
     job.poses = make_poses(o.animate, job.surface.mesh->mesh());
     f.pose = job.poses[0].pose;
 
@@ -196,10 +226,10 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     if (o.vertex_cache) c.emplace_back("vertex_cache", name_of(*o.vertex_cache));
     if (o.direct3d10) c.emplace_back("direct3d", std::int64_t(10));
     c.emplace_back("displace", name_of(heights));
-    if (f.displacement) c.emplace_back("displace_scale", double(f.displacement->scale()));
+    if (f.displacement)
+        c.emplace_back("displace_scale", job.placement.length_to_file(f.displacement->scale()));
     c.emplace_back("animate", name_of(o.animate.motion));
     if (f.pose) c.emplace_back("phase", o.animate.phase);
-    report_warnings(h, o.model.model);
     return job;
 }
 
@@ -208,8 +238,8 @@ void set_picture(Job& job, PictureRequest const& o, SurfaceRequest const& surfac
     FrameSettings& f = job.frame;
     f.width = o.size.width;
     f.height = o.size.height;
-    f.adaptive = o.tess_edge;
-    f.camera = make_camera(o.camera, points_to_show(job, surface.animate), o.size.aspect());
+    f.adaptive = factors_in_mesh(o.tess_edge, job.placement);
+    f.camera = make_camera(o.camera, job, surface.animate, o.size.aspect());
 }
 
 void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double seconds)

@@ -38,7 +38,12 @@ private:
     bool shown_ = false;
 };
 
-void print_warnings(std::vector<std::string> const& warnings);
+/// At once, so that a warning stands before the error that follows from it.
+void print_warning(std::string const& warning);
+/// A model as its warnings are printed.
+Model open_model(std::string const& model);
+/// Warnings of a file carry its path; a result must not.
+std::vector<std::string> without_folder(std::vector<std::string> warnings, std::string const& path);
 
 struct FramePose {
     double phase = 0;
@@ -51,6 +56,8 @@ struct Job {
     FrameSettings frame;
     std::vector<FramePose> poses; ///< one at least
     ReportHeader header;
+    std::string path;    ///< of the model, for messages
+    Placement placement; ///< of the mesh in the model's file
     double load_seconds = 0, build_seconds = 0;
 
     PatchMesh const& patches() const { return *surface.patches; }
@@ -58,15 +65,15 @@ struct Job {
 
 /// build_scheme, or refine_for_scheme for who needs no patches.
 using MakeSurface = SchemeOnMesh(Scheme const&, ControlMesh, BuildOptions const&);
-/// Errors about the mesh name the file, and the line where it is known.
+/// Prints warnings. Errors about the mesh name the file, and the line where it is known.
 SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make = build_scheme);
 /// "scheme", "subdivide", "join" where it is asked for, and each parameter by its name.
 Config config_of(ModelRequest const& o, Parameters const& parameters);
-/// The model and its settings for shading. Prints warnings.
+/// The model and its settings for shading.
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb);
 /// With everything that verbs that tessellate share.
 Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make = build_scheme);
-/// Size, factors and camera, which shows the model as it moves through all frames.
+/// Size, factors and camera, which shows the model, displaced, as it moves through all frames.
 void set_picture(Job& job, PictureRequest const& o, SurfaceRequest const& surface);
 void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double seconds);
 ErrorRow error_row(char const* quantity, char const* measure, char const* unit,

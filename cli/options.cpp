@@ -154,12 +154,33 @@ PictureSize parse_size(std::string const& text, std::string const& option)
     return {out[0], out[1]};
 }
 
-glm::vec3 parse_vector(std::string const& text, std::string const& option)
+glm::dvec3 parse_point(std::string const& text, std::string const& option)
 {
     auto const parts = split(text, ',');
     if (parts.size() != 3) throw Error(option + ": '" + text + "' is not X,Y,Z");
-    return {float(finite_number(parts[0], option)), float(finite_number(parts[1], option)),
-            float(finite_number(parts[2], option))};
+    return {finite_number(parts[0], option), finite_number(parts[1], option),
+            finite_number(parts[2], option)};
+}
+
+// Of whatever length.
+glm::vec3 parse_direction(std::string const& key, std::string const& text,
+                          std::string const& option)
+{
+    glm::dvec3 const d = parse_point(text, option);
+    int exponent = 0;
+    std::frexp(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}), &exponent);
+    if (d == glm::dvec3(0)) throw Error(option + ": " + key + "=" + text + " is no direction");
+    if (std::abs(exponent) <= 20) return glm::vec3(d);
+    return {float(std::ldexp(d.x, -exponent)), float(std::ldexp(d.y, -exponent)),
+            float(std::ldexp(d.z, -exponent))};
+}
+
+float parse_focal(std::string const& text, std::string const& option)
+{
+    float const focal = float(finite_number(text, option));
+    if (!(focal > 0 && std::isfinite(focal)))
+        throw Error(option + " is " + text + ", it must be above 0, in single precision");
+    return focal;
 }
 
 CameraRequest parse_camera(std::string const& text, std::string const& option)
@@ -171,21 +192,19 @@ CameraRequest parse_camera(std::string const& text, std::string const& option)
         std::string const key = part.substr(0, equals);
         std::string const value = equals == std::string::npos ? "" : part.substr(equals + 1);
         if (key == "from")
-            out.from = parse_vector(value, option);
+            out.from = parse_direction(key, value, option);
         else if (key == "eye")
-            out.eye = parse_vector(value, option);
+            out.eye = parse_point(value, option);
         else if (key == "target")
-            out.target = parse_vector(value, option);
+            out.target = parse_point(value, option);
         else if (key == "up")
-            out.up = parse_vector(value, option);
+            out.up = parse_direction(key, value, option);
         else if (key == "focal")
-            out.focal = float(finite_number(value, option + " focal"));
+            out.focal = parse_focal(value, option + ": focal");
         else
             throw Error(option + ": '" + part +
                         "' is not auto, from=, eye=, target=, up= or focal=");
     }
-    if (out.from == glm::vec3(0)) throw Error(option + ": from=0,0,0 is no direction");
-    if (out.focal && !(*out.focal > 0)) throw Error(option + ": focal must be above 0");
     return out;
 }
 
@@ -197,10 +216,10 @@ AdaptiveFactors parse_tess_edge(std::string const& text, std::string const& opti
     if (equals == std::string::npos || (key != "pixels" && key != "distance"))
         refuse(text, option, "none, pixels=P or distance=D");
     double const value = finite_number(text.substr(equals + 1), option + " " + key);
-    if (!(value > 0 && value < 1e30))
+    if (!(value > 0 && (key == "distance" || value < 1e30)))
         throw Error(fmt::format("{}: {} is {}, it must be above 0", option, key, value));
     return {key == "pixels" ? AdaptiveFactors::Kind::Pixels : AdaptiveFactors::Kind::Distance,
-            float(value)};
+            value};
 }
 
 VertexCacheModel parse_vertex_cache(std::string const& text, std::string const&)
@@ -212,7 +231,8 @@ VertexCacheModel parse_vertex_cache(std::string const& text, std::string const&)
 
 void add_options(Verb& verb, ModelRequest& o)
 {
-    verb.required("MODEL", o.model, plain, "OBJ file or built-in cage, see 'tessemu models'");
+    verb.required("MODEL", o.model, plain,
+                  "OBJ file, - for standard input, or built-in cage, see 'tessemu models'");
     verb.option("--scheme", o.scheme, parse_scheme, "patch scheme, see 'tessemu schemes'",
                 "gregory-stencil");
     verb.repeated("--set", o.build.set, parse_parameter,
@@ -250,7 +270,7 @@ void add_options(Verb& verb, SurfaceRequest& o)
                 "along the normal: studs, a pattern in space; or an image on the mesh's texture "
                 "coordinates; or none",
                 "none");
-    verb.option("--displace-scale", o.displace.scale, parse_finite,
+    verb.option("--displace-scale", o.displace.scale, finite_number,
                 "displacement of a white texel, in the model's units [0.01 of its diagonal]");
     using Motion = AnimateRequest::Motion;
     verb.option("--animate", o.animate.motion,

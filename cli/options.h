@@ -13,7 +13,7 @@ namespace tessemu {
 
 /// MODEL, --scheme, --set, --subdivide, --join, --strict
 struct ModelRequest {
-    std::string model; ///< a path, or a built-in's name
+    std::string model; ///< a path, "-" or a built-in's name
     Scheme const* scheme = nullptr;
     BuildOptions build;
 };
@@ -70,16 +70,19 @@ struct PictureSize {
 
 /// --camera
 struct CameraRequest {
-    glm::vec3 from{0.5f, 0.5f, 1.0f}; ///< direction to the eye, where the model is framed
-    std::optional<glm::vec3> eye, target, up;
+    glm::vec3 from{0.5f, 0.5f, 1.0f};      ///< direction to the eye, where the model is framed
+    std::optional<glm::dvec3> eye, target; ///< in the frame of the model's file
+    std::optional<glm::vec3> up;
     std::optional<float> focal;
+
+    bool is_placed() const { return eye || target || up || focal; }
 };
 
 /// --size, --camera, --tess-edge
 struct PictureRequest {
     PictureSize size;
     CameraRequest camera;
-    AdaptiveFactors tess_edge;
+    AdaptiveFactors tess_edge; ///< distances in the frame of the model's file
 };
 
 /// -j, --json

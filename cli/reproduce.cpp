@@ -36,8 +36,10 @@ PaperInput load_input(ReproduceRequest const& o, ReportHeader& header)
     for (PaperModel const& m : o.item->models) {
         std::string const path = m.builtin ? m.name : o.models + "/" + m.name + ".obj";
         if (!m.required && !std::filesystem::exists(path)) continue;
-        Model model = load_model(path);
+        Model model = open_model(path);
         header.inputs.emplace_back(model.name, model.sha256);
+        for (std::string& w : without_folder(std::move(model.warnings), path))
+            header.warnings.push_back(std::move(w));
         in.meshes.push_back(std::move(model.mesh));
     }
     if (!o.item->gpu.empty()) in.gpu = load_gpu_model(o.item->gpu);

@@ -32,11 +32,10 @@ int run_batch(TessellateRequest const& o)
         out += tessellator_answer(run_tessellator_case(c)) + "\n";
     }
     if (illegal)
-        print_warnings({fmt::format(
+        print_warning(fmt::format(
             "{}:{}: Direct3D 11 has no such output in this domain (rule R75){}: answered as the "
             "reference tessellator does",
-            o.batch, first,
-            illegal > 1 ? fmt::format(", and in {} cases more", illegal - 1) : "")});
+            o.batch, first, illegal > 1 ? fmt::format(", and in {} cases more", illegal - 1) : ""));
     result.finish([&] { return out; }, "");
     return 0;
 }

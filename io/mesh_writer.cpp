@@ -101,16 +101,31 @@ struct MeshWriter::Impl {
     bool weld;
     WaitingRecords<Vertex> vertices;
     WaitingRecords<Triangle> triangles;
+    Placement placement;
     std::unordered_map<Bits, std::uint32_t, BitsHash> welded;
     std::vector<std::uint32_t> number; // of the patch's points
 
-    Impl(OutputFile& out_, bool weld_)
+    Impl(OutputFile& out_, bool weld_, Placement const& placement_)
         : out(out_),
           format(mesh_format(out_)),
           weld(weld_),
           vertices(out_),
-          triangles(out_)
+          triangles(out_),
+          placement(placement_)
     {
+    }
+
+    glm::dvec3 in_file(Vertex const& v) const
+    {
+        return placement.to_file({v.position[0], v.position[1], v.position[2]});
+    }
+    /// A vertex's bytes in turn: its position as the file of a mesh has it, and the rest.
+    template <class Visit> void bytes_of(Vertex const& v, Visit const& visit) const
+    {
+        if (placement.is_identity()) return visit(&v, sizeof v);
+        glm::dvec3 const p = in_file(v);
+        for (int k = 0; k < 3; ++k) visit(&p[k], sizeof p[k]);
+        visit(&v.normal, sizeof v - sizeof v.position);
     }
 
     template <class T> void write_bytes(T const& value) const
@@ -120,15 +135,19 @@ struct MeshWriter::Impl {
 
     void write_ply() const
     {
-        out.write(
-            fmt::format("ply\nformat binary_little_endian 1.0\ncomment tessemu\n"
-                        "element vertex {}\n"
-                        "property float x\nproperty float y\nproperty float z\n"
-                        "property float nx\nproperty float ny\nproperty float nz\n"
-                        "property float u\nproperty float v\nproperty int patch\n"
-                        "element face {}\nproperty list uchar int vertex_indices\nend_header\n",
-                        vertices.count(), triangles.count()));
-        vertices.visit([&](Vertex const& v) { write_bytes(v); });
+        out.write(fmt::format(
+            "ply\nformat binary_little_endian 1.0\ncomment tessemu\n"
+            "element vertex {1}\n"
+            "property {0} x\nproperty {0} y\nproperty {0} z\n"
+            "property float nx\nproperty float ny\nproperty float nz\n"
+            "property float u\nproperty float v\nproperty int patch\n"
+            "element face {2}\nproperty list uchar int vertex_indices\nend_header\n",
+            placement.is_identity() ? "float" : "double", vertices.count(), triangles.count()));
+        vertices.visit([&](Vertex const& v) {
+            bytes_of(v, [&](void const* bytes, std::size_t n) {
+                out.write({static_cast<char const*>(bytes), n});
+            });
+        });
         triangles.visit([&](Triangle const& t) {
             write_bytes(std::uint8_t(3));
             write_bytes(t.v);
@@ -138,9 +157,14 @@ struct MeshWriter::Impl {
     void write_obj() const
     {
         vertices.visit([&](Vertex const& v) {
-            out.write(fmt::format("v {} {} {}\nvn {} {} {}\nvt {} {}\n", v.position[0],
-                                  v.position[1], v.position[2], v.normal[0], v.normal[1],
-                                  v.normal[2], v.uv[0], v.uv[1]));
+            if (placement.is_identity()) {
+                out.write(fmt::format("v {} {} {}\n", v.position[0], v.position[1], v.position[2]));
+            } else {
+                glm::dvec3 const p = in_file(v);
+                out.write(fmt::format("v {} {} {}\n", p.x, p.y, p.z));
+            }
+            out.write(fmt::format("vn {} {} {}\nvt {} {}\n", v.normal[0], v.normal[1], v.normal[2],
+                                  v.uv[0], v.uv[1]));
         });
         std::uint32_t patch = 0xffffffffu;
         triangles.visit([&](Triangle const& t) {
@@ -151,7 +175,10 @@ struct MeshWriter::Impl {
     }
 };
 
-MeshWriter::MeshWriter(OutputFile& out, bool weld) : impl_(std::make_unique<Impl>(out, weld)) {}
+MeshWriter::MeshWriter(OutputFile& out, bool weld, Placement const& placement)
+    : impl_(std::make_unique<Impl>(out, weld, placement))
+{
+}
 
 MeshWriter::~MeshWriter() = default;
 
@@ -213,7 +240,9 @@ std::uint64_t MeshWriter::triangles() const
 
 void MeshWriter::add_to_hash(Sha256& hash) const
 {
-    impl_->vertices.visit([&](Vertex const& v) { hash.add(&v, sizeof v); });
+    impl_->vertices.visit([&](Vertex const& v) {
+        impl_->bytes_of(v, [&](void const* bytes, std::size_t n) { hash.add(bytes, n); });
+    });
     impl_->triangles.visit([&](Triangle const& t) { hash.add(t.v, sizeof t.v); });
 }
 

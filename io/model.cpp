@@ -6,13 +6,37 @@
 #include "io/sha256.h"
 #include "pipeline/mesh/builtin_models.h"
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
 namespace tessemu {
 
-Model load_model(std::string const& path_or_name)
+namespace {
+
+std::string const kStandardInput = "standard input";
+
+std::string read_standard_input()
 {
     std::string text;
-    bool found = std::filesystem::exists(path_or_name);
-    if (found) {
+    char block[1 << 16];
+    while (std::size_t const n = std::fread(block, 1, sizeof block, stdin)) text.append(block, n);
+    if (std::ferror(stdin))
+        throw FormatError(kStandardInput, 0,
+                          std::string("cannot be read: ") + std::strerror(errno));
+    return text;
+}
+
+} // namespace
+
+Model load_model(std::string const& path_or_name, WarningSink const& sink)
+{
+    std::string text;
+    bool const standard_input = path_or_name == "-";
+    bool found = standard_input || std::filesystem::exists(path_or_name);
+    if (standard_input) {
+        text = read_standard_input();
+    } else if (found) {
         text = read_file(path_or_name);
     } else {
         std::string known;
@@ -24,14 +48,14 @@ Model load_model(std::string const& path_or_name)
             throw FormatError(path_or_name, 0,
                               "no such file, and no built-in cage (" + known + ")");
     }
-    ObjFile obj = read_obj(text, path_or_name);
     Model out;
+    ObjFile obj = read_obj(text, standard_input ? kStandardInput : path_or_name, sink);
     out.name = std::filesystem::path(path_or_name).filename().string();
     out.mesh = std::move(obj.mesh);
+    out.placement = obj.placement;
     out.mesh.name = out.name;
-    out.face_lines = std::move(obj.face_lines);
+    out.lines = std::move(obj.lines);
     out.warnings = std::move(obj.warnings);
-    out.path = path_or_name;
     out.sha256 = sha256_of(text);
     return out;
 }

@@ -9,21 +9,16 @@ namespace tessemu {
 
 struct Model {
     ControlMesh mesh;
-    std::string name;   ///< file name without its folder, or the built-in's name
-    std::string sha256; ///< of the OBJ text
-    std::vector<int> face_lines;
+    Placement placement; ///< of the mesh in its file
+    std::string name;    ///< file name without its folder, or the built-in's name; "-"
+    std::string sha256;  ///< of the OBJ text
+    FileLines lines;     ///< its file as given; "standard input"
     std::vector<std::string> warnings;
-
-    std::string path; ///< as given, for messages
-
-    int line_of_face(std::size_t face) const
-    {
-        return face < face_lines.size() ? face_lines[face] : 0;
-    }
 };
 
-/// A file if there is one, else a built-in cage. Throws FormatError; for a name that is neither it
-/// lists the built-ins.
-Model load_model(std::string const& path_or_name);
+/// "-" is standard input; else a file if there is one, else a built-in cage. Throws FormatError;
+/// for a name that is neither it lists the built-ins.
+/// \param sink  hears the warnings as read_obj does
+Model load_model(std::string const& path_or_name, WarningSink const& sink = {});
 
 } // namespace tessemu

@@ -97,12 +97,13 @@ TessFactorRule tess_factor_rule(AdaptiveFactors const& adaptive, Camera const& c
 {
     TessFactorRule r;
     r.eye = {camera.eye.x, camera.eye.y, camera.eye.z};
+    float const value = float(adaptive.value);
     if (adaptive.kind == AdaptiveFactors::Kind::Pixels) {
         r.kind = TessFactorRule::Kind::ProjectedLength;
-        r.scale = camera.focal * float(height) / (2 * adaptive.value);
+        r.scale = camera.focal * float(height) / (2 * value);
     } else if (adaptive.kind == AdaptiveFactors::Kind::Distance) {
         r.kind = TessFactorRule::Kind::Distance;
-        r.scale = tess_factor * adaptive.value;
+        r.scale = tess_factor * value;
     }
     return r;
 }

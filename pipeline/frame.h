@@ -28,8 +28,8 @@ std::array<float, 3> color_of(PatchClass patch_class);
 struct AdaptiveFactors {
     enum class Kind { None, Pixels, Distance };
     Kind kind = Kind::None;
-    float value = 8; ///< Pixels: length of a segment in the picture. Distance: at which an edge
-                     ///< gets the frame's tess factor; it falls with the distance
+    double value = 8; ///< Pixels: length of a segment in the picture. Distance: at which an edge
+                      ///< gets the frame's tess factor; it falls with the distance
 };
 /// As the hull shaders have it.
 TessFactorRule tess_factor_rule(AdaptiveFactors const& adaptive, Camera const& camera, int height,

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/commands/displacement.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace tessemu {
 
 namespace {
@@ -113,6 +116,7 @@ Displacement Displacement::studs(float period, float scale)
     if (!(period > 0)) throw Error("the period of the studs is not above 0");
     Displacement d;
     d.scale_ = scale;
+    d.reach_ = std::abs(scale);
     d.frequency_ = 1 / period;
     return d;
 }
@@ -126,7 +130,12 @@ Displacement::Displacement(Topology const& topology, HeightImage const& image, f
         throw Error("the mesh has no texture coordinates for a height map; the built-in pattern "
                     "needs none");
     texels_.reserve(4 * image.heights.size());
-    for (float h : image.heights) texels_.insert(texels_.end(), {h, h, h, 1});
+    float highest = 1;
+    for (float h : image.heights) {
+        texels_.insert(texels_.end(), {h, h, h, 1});
+        highest = std::max(highest, std::abs(h));
+    }
+    reach_ = highest * std::abs(scale);
     corners_ = owned_corners(topology);
     add_split_corners(topology, corners_, split_start_);
 }

@@ -30,6 +30,9 @@ public:
 
     HeightMap height_map() const;
     float scale() const { return scale_; }
+    /// The largest distance between a point and where it is displaced to; the scale's magnitude at
+    /// least.
+    float reach() const { return reach_; }
     /// See OwnedCoordinates; empty for the pattern.
     std::span<float const> corners() const { return corners_; }
     /// The first of a unit's four corners among them.
@@ -37,7 +40,7 @@ public:
 
 private:
     Displacement() = default;
-    float scale_ = 0, frequency_ = 1;
+    float scale_ = 0, reach_ = 0, frequency_ = 1;
     int width_ = 0, height_ = 0;
     std::vector<float> texels_, corners_;
     std::vector<std::uint32_t> split_start_; // of a face that is no quad: its quads' corners

@@ -79,16 +79,45 @@ void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const&
     list.memory.push_back(settings.pose);
 }
 
+namespace {
+
+// Vertices of the file at a boundary edge that is not infinitely sharp. Of a vertex that was cut
+// into several all are at it.
+std::vector<std::uint32_t> soft_boundary(Topology const& topology)
+{
+    ControlMesh const& mesh = topology.mesh();
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> sharp;
+    for (ControlMesh::Crease const& c : mesh.creases)
+        if (c.sharpness >= 10) sharp.emplace_back(std::min(c.a, c.b), std::max(c.a, c.b));
+    std::sort(sharp.begin(), sharp.end());
+    std::vector<std::uint32_t> out;
+    for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
+        if (topology.twin(h) != Topology::kNone) continue;
+        std::uint32_t const a = topology.vertex_of(h), b = topology.vertex_of(topology.next(h));
+        if (std::binary_search(sharp.begin(), sharp.end(),
+                               std::pair(std::min(a, b), std::max(a, b))))
+            continue;
+        out.push_back(mesh.file_vertex(a));
+        out.push_back(mesh.file_vertex(b));
+    }
+    std::sort(out.begin(), out.end());
+    return out;
+}
+
+} // namespace
+
 std::vector<char> hidden_faces(RefinedMesh const& refined, std::vector<std::string>& warnings)
 {
     ControlMesh const& base = refined.base();
     std::vector<char> hidden(base.faces(), 0);
     for (std::uint32_t f : base.holes) hidden[f] = 1;
     if (base.boundary == BoundaryRule::None) {
+        std::vector<std::uint32_t> const soft = soft_boundary(refined.base_topology());
         std::size_t dropped = 0;
         for (std::uint32_t f = 0; f < base.faces(); ++f)
             for (std::uint32_t v : base.face(f))
-                if (refined.base_topology().is_boundary(v) && !hidden[f]) hidden[f] = 1, ++dropped;
+                if (!hidden[f] && std::binary_search(soft.begin(), soft.end(), base.file_vertex(v)))
+                    hidden[f] = 1, ++dropped;
         if (dropped)
             warnings.push_back(std::to_string(dropped) +
                                " faces at the boundary are not drawn: interpolateboundary is 0");

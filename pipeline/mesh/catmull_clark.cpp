@@ -33,7 +33,7 @@ std::vector<Vec> catmull_clark_points(Topology const& topology, std::span<Vec co
         } else if (topology.is_boundary(v)) {
             Vec const first = x[topology.vertex_of(topology.next(ring.front()))];
             Vec const last = x[topology.vertex_of(topology.previous(ring.back()))];
-            bool const fixed = ring.size() == 1 && mesh.boundary != BoundaryRule::EdgeOnly;
+            bool const fixed = ring.size() == 1 && !mesh.smooth_corners();
             out.push_back(fixed ? x[v] : (first + 6.0 * x[v] + last) / 8.0);
         } else {
             Vec edges(0), faces(0);

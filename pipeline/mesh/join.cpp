@@ -196,7 +196,7 @@ double shortest_edge(ControlMesh const& mesh)
 
 } // namespace
 
-JoinedMesh join_vertices(ControlMesh mesh, double distance)
+JoinedMesh join_vertices(ControlMesh mesh, double distance, Placement const& placement)
 {
     if (!(distance >= 0))
         throw Error("the distance within which vertices are joined is " + number(distance) +
@@ -206,7 +206,8 @@ JoinedMesh join_vertices(ControlMesh mesh, double distance)
     std::vector<std::uint32_t> to(vertices); // their numbers among those that stay
     std::vector<std::uint32_t> stays;
     {
-        Clusters clusters({mesh.positions.begin(), mesh.positions.end()}, distance);
+        Clusters clusters({mesh.positions.begin(), mesh.positions.end()},
+                          placement.length_from_file(distance));
         for (std::uint32_t v = 0; v < vertices; ++v) {
             std::uint32_t const lowest = clusters.lowest(v);
             if (lowest == v) {
@@ -223,7 +224,7 @@ JoinedMesh join_vertices(ControlMesh mesh, double distance)
         out.mesh = std::move(mesh);
         return out;
     }
-    double const shortest = shortest_edge(mesh);
+    double const shortest = placement.length_to_file(shortest_edge(mesh));
     std::vector<std::size_t> had(mesh.faces());
     for (std::size_t f = 0; f < mesh.faces(); ++f) had[f] = different(mesh.face(f));
     for (std::uint32_t& v : mesh.face_vertices) v = to[v];

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pipeline/mesh/placement.h"
 #include "pipeline/mesh/topology.h"
 
 namespace tessemu {
@@ -25,10 +26,10 @@ struct JoinedMesh {
 /// several creases on an edge, or corners on a vertex, the sharpest stays, and a crease between two
 /// vertices that are one goes.
 ///
-/// \param distance  in the mesh's units; 0 joins equal positions
+/// \param distance  in the file's units, which messages have too; 0 joins equal positions
 /// \cost  n log n for positions that do not crowd within the distance
 /// Throws Error for a distance below 0 or NaN, MeshError where no face would be left.
-JoinedMesh join_vertices(ControlMesh mesh, double distance);
+JoinedMesh join_vertices(ControlMesh mesh, double distance, Placement const& placement = {});
 
 /// A line for each thing that was done.
 std::vector<std::string> in_words(VertexJoin const& join, double distance);

@@ -222,16 +222,17 @@ ManifoldMesh make_manifold(ControlMesh mesh)
     return out;
 }
 
-std::vector<std::string> in_words(MeshRepairs const& r)
+std::vector<std::string> in_words(MeshRepairs const& r, FileLines const& lines)
 {
     std::vector<std::string> out;
     auto const say = [&](MeshRepairs::Count const& c, std::string const& what, char const* whats,
                          char const* one, char const* many) {
         if (c.number == 0) return;
         std::string const first = what + " " + std::to_string(c.first + 1);
-        out.push_back(c.number == 1 ? first + " " + one
-                                    : std::to_string(c.number) + " " + whats + " " + many +
-                                          "; the first is " + first);
+        out.push_back((what == "face" ? lines.before_face(c.first) : lines.before_vertex(c.first)) +
+                      (c.number == 1 ? first + " " + one
+                                     : std::to_string(c.number) + " " + whats + " " + many +
+                                           "; the first is " + first));
     };
     say(r.repeated, "face", "faces", "names a vertex twice in a row and loses the repetition",
         "name a vertex twice in a row and lose the repetition");

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pipeline/mesh/file_lines.h"
 #include "pipeline/mesh/mesh.h"
 
 namespace tessemu {
@@ -43,6 +44,6 @@ struct ManifoldMesh {
 ManifoldMesh make_manifold(ControlMesh mesh);
 
 /// A line for each kind of repair, with its number and the first place.
-std::vector<std::string> in_words(MeshRepairs const& repairs);
+std::vector<std::string> in_words(MeshRepairs const& repairs, FileLines const& lines = {});
 
 } // namespace tessemu

@@ -17,7 +17,8 @@ namespace tessemu {
 
 /// How the surface meets the mesh's boundary (OpenSubdiv's interpolateboundary).
 enum class BoundaryRule {
-    /// Faces at the boundary are not drawn.
+    /// Faces with a vertex on the boundary are not drawn, unless all boundary edges at their
+    /// vertices are infinitely sharp; the boundary curve of what is left is as EdgeOnly has it.
     None = 0,
     /// The boundary is a curve, a vertex with one face is interpolated (LOOP09 4.6).
     EdgeAndCorner = 1,
@@ -52,6 +53,8 @@ struct ControlMesh {
     /// Vertices a < b of an edge that two faces run along and do not share, ascending.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> slits;
 
+    /// Whether the boundary curve is smooth through a vertex with one face.
+    bool smooth_corners() const { return boundary != BoundaryRule::EdgeAndCorner; }
     std::uint32_t file_vertex(std::uint32_t v) const
     {
         return file_vertices.empty() ? v : file_vertices[v];

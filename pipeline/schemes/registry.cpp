@@ -227,6 +227,14 @@ void warn_of_tags(SchemeInfo const& info, Topology const& topology, std::vector<
                       " sharp corners are drawn smooth: the scheme knows no corners");
 }
 
+void warn(SchemeOnMesh& out, BuildOptions const& options, std::vector<std::string> const& warnings)
+{
+    for (std::string const& w : warnings) {
+        out.warnings.push_back(w);
+        if (options.warn) options.warn(w);
+    }
+}
+
 // What the scheme takes is refined, anything else refused or, unless it must be taken, refined too.
 SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const& options,
                     bool must_be_taken)
@@ -240,15 +248,14 @@ SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const
     SchemeOnMesh out;
     out.parameters = resolve_parameters(info, options.set);
     if (options.join) {
-        JoinedMesh joined = join_vertices(std::move(mesh), *options.join);
+        JoinedMesh joined = join_vertices(std::move(mesh), *options.join, options.placement);
         mesh = std::move(joined.mesh);
-        out.warnings = in_words(joined.join, *options.join);
+        warn(out, options, in_words(joined.join, *options.join));
     }
     if (!options.strict) {
         ManifoldMesh manifold = make_manifold(std::move(mesh));
         mesh = std::move(manifold.mesh);
-        std::vector<std::string> const more = in_words(manifold.repairs);
-        out.warnings.insert(out.warnings.end(), more.begin(), more.end());
+        warn(out, options, in_words(manifold.repairs, options.lines));
     }
     std::size_t polygons = 0, largest = 0;
     for (std::size_t f = 0; f < mesh.faces(); ++f) {
@@ -261,11 +268,11 @@ SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const
                                                    info.takes.step, own);
     RefinedMesh const& refined = *out.mesh;
     if (polygons && own > 0)
-        out.warnings.push_back(std::to_string(polygons) + " faces have more than 4 sides (up to " +
-                               std::to_string(largest) + "): one Catmull-Clark step makes " +
-                               std::to_string(refined.reference().faces()) +
-                               " quads of the mesh's " + std::to_string(refined.base().faces()) +
-                               " faces");
+        warn(out, options,
+             {std::to_string(polygons) + " faces have more than 4 sides (up to " +
+              std::to_string(largest) + "): one Catmull-Clark step makes " +
+              std::to_string(refined.reference().faces()) + " quads of the mesh's " +
+              std::to_string(refined.base().faces()) + " faces"});
     return out;
 }
 
@@ -281,17 +288,17 @@ SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions c
     SchemeInfo const info = scheme.info();
     SchemeOnMesh out = refine(info, std::move(mesh), options, true);
     out.patches = scheme.build(out.mesh, out.parameters);
+    std::vector<std::string> more;
     if (auto const other = out.patches->another_way()) {
         if (options.strict)
             throw MeshError(other->face, other->what +
-                                             ", which --strict refuses: the first is of "
-                                             "face " +
+                                             ", which --strict refuses: the first is of face " +
                                              std::to_string(other->face + 1));
-        out.warnings.push_back(other->what);
+        more.push_back(other->what);
     }
-    std::vector<std::string> const more = out.patches->warnings();
-    out.warnings.insert(out.warnings.end(), more.begin(), more.end());
-    warn_of_tags(info, out.mesh->base_topology(), out.warnings);
+    for (std::string const& w : out.patches->warnings()) more.push_back(w);
+    warn_of_tags(info, out.mesh->base_topology(), more);
+    warn(out, options, more);
     return out;
 }
 

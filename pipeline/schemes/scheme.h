@@ -9,6 +9,9 @@
 
 #include "pipeline/commands/patch_mesh.h"
 #include "pipeline/mesh/catmull_clark.h"
+#include "pipeline/mesh/file_lines.h"
+#include "pipeline/mesh/placement.h"
+#include "pipeline/mesh/warnings.h"
 
 #include <limits>
 #include <map>
@@ -99,10 +102,15 @@ struct BuildOptions {
     /// Steps of subdivision beyond those that the scheme asks for, 0 to 6.
     int subdivide = 0;
     ParameterTexts set = {};
-    /// Joins vertices that lie within this distance, in the mesh's units, before all else.
+    /// Joins vertices that lie within this distance, in the file's units, before all else.
     std::optional<double> join = {};
+    Placement placement = {}; ///< of the mesh in its file
     /// Refuses a mesh that would have to be cut, to lose faces, or to be drawn in another way.
     bool strict = false;
+    /// Of the mesh's file, for warnings.
+    FileLines lines = {};
+    /// Hears the warnings, those before an error before it is thrown.
+    WarningSink warn = {};
 };
 
 /// Joins vertices if asked to, makes the mesh a manifold, refines it as options and scheme ask,

@@ -32,18 +32,19 @@ inline std::filesystem::path scratch()
 }
 
 /// A command of the shell.
-inline Result run_command(std::string const& command)
+inline Result run_command(std::string const& command,
+                          std::filesystem::path const& input = "/dev/null")
 {
     std::filesystem::path const out = scratch() / "stdout", err = scratch() / "stderr";
-    int const status =
-        std::system((command + " >" + out.string() + " 2>" + err.string() + " </dev/null").c_str());
+    int const status = std::system(
+        (command + " >" + out.string() + " 2>" + err.string() + " <" + input.string()).c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
 }
 
 /// The program with these arguments.
-inline Result run(std::string const& arguments)
+inline Result run(std::string const& arguments, std::filesystem::path const& input = "/dev/null")
 {
-    return run_command(std::string(TESSEMU_PROGRAM) + " " + arguments);
+    return run_command(std::string(TESSEMU_PROGRAM) + " " + arguments, input);
 }
 
 } // namespace tessemu::test

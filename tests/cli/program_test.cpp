@@ -2,6 +2,7 @@
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/machine.h"
+#include "pipeline/mesh/builtin_models.h"
 #include "tests/cli/program.h"
 #include "tests/io/picture_hash.h"
 
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -149,6 +151,260 @@ TEST(Program, BadUsageExitsTwoWithOneLineThatNamesTheValue)
     }
 }
 
+// Warnings that say why stand above the error.
+TEST(Program, WarningsArePrintedBeforeTheErrorThatFollows)
+{
+    fs::path const cage = scratch() / "odd.obj";
+    std::string const square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 2 2\nl 1 5\n";
+    std::ofstream(cage) << square << "f 1 2 3\nf 1 2 4\n";
+    Result r = run("draw " + cage.string() + " --scheme acc");
+    EXPECT_EQ(r.status, 2);
+    std::size_t const line = r.err.find("odd.obj:6: 'l'"), unused = r.err.find("vertex 5"),
+                      error = r.err.find("acc draws quads only");
+    EXPECT_LT(line, unused) << r.err;
+    EXPECT_LT(unused, error) << r.err;
+    EXPECT_NE(error, std::string::npos) << r.err;
+    std::ofstream(cage) << square << "f 1 2 3 9\n";
+    r = run("info " + cage.string());
+    EXPECT_EQ(r.status, 2);
+    EXPECT_LT(r.err.find("odd.obj:6: 'l'"), r.err.find("odd.obj:7: vertex index is 9")) << r.err;
+    std::ofstream(cage) << square << "f 1 2 3 4\n";
+    r = run("draw " + cage.string() + " --displace nowhere.png");
+    EXPECT_LT(r.err.find("odd.obj:6: 'l'"), r.err.find("nowhere.png")) << r.err;
+    EXPECT_EQ(r.err.find("odd.obj:6: 'l'"), r.err.rfind("odd.obj:6: 'l'")) << "twice: " << r.err;
+}
+
+TEST(Program, ReadsAModelFromStandardInput)
+{
+    fs::path const cage = scratch() / "square.obj", out = scratch() / "in.ply";
+    std::ofstream(cage) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\np 1\nf 1 2 3 4\n";
+    for (std::string const& verb :
+         {std::string("draw - --size 16x16"), std::string("info -"),
+          std::string("check - --tess 2"), std::string("compare -"),
+          std::string("cost - --gpu gtx260"), "export - -o " + out.string()}) {
+        Result const file = run(verb.substr(0, verb.find('-')) + cage.string() +
+                                verb.substr(verb.find('-') + 1) + " --json -");
+        Result const in = run(verb + " --json -", cage);
+        ASSERT_EQ(in.status, file.status) << verb << ": " << in.err;
+        EXPECT_EQ(in.err, "warning: standard input:5: 'p': points are left out, only faces make a "
+                          "surface\n");
+        Json a = Json::parse(file.out), b = Json::parse(in.out);
+        EXPECT_EQ(b["inputs"][0]["name"], "-");
+        EXPECT_EQ(a["inputs"][0]["sha256"], b["inputs"][0]["sha256"]);
+        EXPECT_EQ(a["counters"], b["counters"]);
+    }
+    Result const bad = run("draw - --scheme pm", cage);
+    EXPECT_EQ(bad.status, 2);
+    EXPECT_NE(bad.err.find("standard input:6: "), std::string::npos) << bad.err;
+    Result const empty = run("draw -");
+    EXPECT_EQ(empty.status, 2);
+    EXPECT_NE(empty.err.find("standard input: is empty"), std::string::npos) << empty.err;
+}
+
+// A built-in cage times 2^k, then moved.
+fs::path cage_elsewhere(std::string const& name, int k, double by = 0)
+{
+    fs::path const path = scratch() / (name + ".obj");
+    std::ofstream out(path);
+    for (BuiltinModel const& m : builtin_models()) {
+        if (m.name != name) continue;
+        std::istringstream in{std::string(m.obj)};
+        std::string line;
+        while (std::getline(in, line)) {
+            double x = 0, y = 0, z = 0;
+            if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) == 3) {
+                char text[120];
+                std::snprintf(text, sizeof text, "v %.17g %.17g %.17g", std::ldexp(x, k) + by,
+                              std::ldexp(y, k) - by, std::ldexp(z, k) + by / 2);
+                line = text;
+            }
+            out << line << "\n";
+        }
+    }
+    return path;
+}
+
+TEST(Program, ACageTimes2To40GivesTheSamePictureAndVerdicts)
+{
+    fs::path const picture = scratch() / "scaled.png";
+    for (std::string const name : {"jug", "golem"}) {
+        std::string expected_picture, expected_verdicts;
+        for (int k : {0, -40, 40}) {
+            std::string const cage = cage_elsewhere(name, k).string();
+            std::string const draw = "draw " + cage +
+                                     " --size 96x64 --displace studs --tess-edge pixels=8 "
+                                     "--animate sway -o " +
+                                     picture.string();
+            ASSERT_EQ(run(draw).status, 0) << draw;
+            std::string const drawn = test::read_text(picture);
+            Result const check = run("check " + cage + " --size 96x64 --rays 2000 --json -");
+            ASSERT_EQ(check.status, 0) << check.err;
+            std::string const verdicts = Json::parse(check.out)["verdicts"].dump();
+            if (k == 0) expected_picture = drawn, expected_verdicts = verdicts;
+            EXPECT_EQ(drawn, expected_picture) << name << " times 2^" << k;
+            EXPECT_EQ(verdicts, expected_verdicts) << name << " times 2^" << k;
+        }
+    }
+}
+
+TEST(Program, ACageFarFromTheOriginGivesTheSameVerdicts)
+{
+    auto const verdicts = [](std::string const& model) {
+        Json const j =
+            Json::parse(run("check " + model + " --size 96x64 --rays 2000 --json -").out);
+        std::string out;
+        for (auto const& [name, v] : j["verdicts"].items())
+            out += name + " " + v["verdict"].get<std::string>() + " " +
+                   std::to_string(v.value("checked", 0)) + ", ";
+        EXPECT_EQ(j["warnings"].size(), 0u) << j["warnings"];
+        // The samples that a picture covers turn with its rounding.
+        return out.substr(0, out.find("coverage")) + out.substr(out.find("raycast"));
+    };
+    for (std::string const name : {"jug", "golem"})
+        for (double by : {1e5, 1e7, 1e12})
+            EXPECT_EQ(verdicts(cage_elsewhere(name, 0, by).string()), verdicts(name)) << by;
+}
+
+TEST(Program, PositionsOfAMovedCageAreTheFiles)
+{
+    fs::path const cage = scratch() / "utm.obj", out = scratch() / "utm_out.obj",
+                   ply = scratch() / "utm_out.ply";
+    std::ofstream(cage) << "v 486997.88 4684678.68 507.99\nv 487007.88 4684678.68 507.99\n"
+                           "v 487007.88 4684688.68 517.99\nv 486997.88 4684688.68 507.99\n"
+                           "f 1 2 3 4\n";
+    ASSERT_EQ(run("export " + cage.string() + " --tess 1 -o " + out.string()).err, "");
+    std::istringstream lines(test::read_text(out));
+    std::vector<double> x;
+    for (std::string word; lines >> word;)
+        if (word == "v")
+            for (int k = 0; k < 3; ++k) lines >> x.emplace_back();
+    ASSERT_EQ(x.size(), 12u);
+    // Single precision keeps 10 m to 2^-20 m, doubles so far off to 2^-30.
+    double const expected[2][3] = {{486997.88, 4684678.68, 507.99},
+                                   {487007.88, 4684688.68, 517.99}};
+    for (auto const& p : expected) {
+        double nearest = 1;
+        for (std::size_t v = 0; v < 4; ++v) {
+            double d = 0;
+            for (std::size_t k = 0; k < 3; ++k) d = std::max(d, std::abs(x[3 * v + k] - p[k]));
+            nearest = std::min(nearest, d);
+        }
+        EXPECT_LT(nearest, 2e-6);
+    }
+    ASSERT_EQ(run("export " + cage.string() + " --tess 1 -o " + ply.string()).status, 0);
+    std::string const bytes = test::read_text(ply);
+    EXPECT_NE(bytes.find("property double x\nproperty double y\nproperty double z\n"
+                         "property float nx"),
+              std::string::npos);
+    std::size_t const header = bytes.find("end_header\n") + 11;
+    EXPECT_EQ(bytes.size(), header + 4 * (3 * 8 + 6 * 4) + 2 * 13);
+
+    // A camera is read and told in the file's frame, as are other lengths.
+    Json const j =
+        draw_json(cage.string() + " --size 32x32 --camera "
+                                  "eye=487002.5,4684683.5,540:target=487002.5,4684683.25,508");
+    EXPECT_EQ(j["config"]["camera_eye"], Json({487002.5, 4684683.5, 540.0}));
+    EXPECT_EQ(j["config"]["camera_target"], Json({487002.5, 4684683.25, 508.0}));
+    EXPECT_GT(j["counters"]["PSInvocations"], 100);
+}
+
+TEST(Program, LengthsOfAScaledCageAreTheFiles)
+{
+    std::string const cage = cage_elsewhere("golem", -40).string();
+    std::string const eye = "--camera eye=1,2,9:target=0,1,0 --size 48x48 ";
+    auto const times = [](double x) {
+        char text[40];
+        std::snprintf(text, sizeof text, "%.17g", std::ldexp(x, -40));
+        return std::string(text);
+    };
+    Json const home = draw_json("golem " + eye +
+                                "--tess-edge distance=2 --displace studs "
+                                "--displace-scale 0.125");
+    Json const away = draw_json(cage + " --camera eye=" + times(1) + "," + times(2) + "," +
+                                times(9) + ":target=0," + times(1) + ",0 --size 48x48 " +
+                                "--tess-edge distance=" + times(2) +
+                                " --displace studs --displace-scale " + times(0.125));
+    EXPECT_EQ(home["counters"], away["counters"]);
+    EXPECT_EQ(away["config"]["displace_scale"], std::ldexp(0.125, -40));
+    EXPECT_EQ(away["config"]["camera_eye"][2], std::ldexp(9.0, -40));
+    auto const errors = [](std::string const& model) {
+        return Json::parse(run("compare " + model + " --level 2 --json -").out);
+    };
+    Json const a = errors("golem"), b = errors(cage);
+    EXPECT_EQ(a["errors"], b["errors"]);
+    EXPECT_EQ(b["diagonal"], std::ldexp(a["diagonal"].get<double>(), -40));
+}
+
+TEST(Program, WarnsWhereTheFilesOwnDigitsLoseAnEdge)
+{
+    fs::path const cage = scratch() / "digits.obj";
+    auto const err = [&](std::string const& digits) {
+        std::ofstream(cage) << "v 4000000" + digits + " 0 0\nv 4000001" + digits +
+                                   " 0 0\nv 4000001" + digits + " 1 0\nv 4000000" + digits +
+                                   " 1 0\nf 1 2 3 4\n";
+        return run("info " + cage.string()).err;
+    };
+    EXPECT_NE(
+        err(".00").find("digits.obj:1: so far from the origin the file's coordinates are good "
+                        "to 0.005, 0.5 % of the edge between vertices 1 and 2"),
+        std::string::npos)
+        << err(".00");
+    EXPECT_EQ(err(".000"), "");
+    EXPECT_EQ(err(".000000000"), "");
+    std::ofstream(cage) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n"; // exact where it stands
+    EXPECT_EQ(run("info " + cage.string()).err, "");
+}
+
+TEST(Program, ACageWithoutExtentIsRefused)
+{
+    fs::path const cage = scratch() / "point.obj";
+    std::ofstream(cage) << "v 1 2 3\nv 1 2 3\nv 1 2 3\nv 0 0 0\nf 1 2 3\n";
+    Result const r = run("draw " + cage.string());
+    EXPECT_EQ(r.status, 2);
+    EXPECT_NE(r.err.find("point.obj: all vertices of all faces are at one point"),
+              std::string::npos)
+        << r.err;
+}
+
+TEST(Program, CamerasShowSomethingOrAreRefused)
+{
+    for (std::string const camera :
+         {"eye=0,1,9:target=0,1,0:up=0,0,1", "eye=0,9,0:target=0,1,0:up=0,-1,0",
+          "eye=9,1,0:target=0,1,0:up=1,0,0", "from=1e-300,0,1e-300", "from=0,1e30,0",
+          "eye=0,1,9:target=0,1,0:up=1e-300,1e-300,0"})
+        EXPECT_GT(draw_json("golem --size 64x64 --camera " + camera)["counters"]["PSInvocations"],
+                  99)
+            << camera;
+    for (auto const& [camera, word] : std::vector<std::pair<std::string, std::string>>{
+             {"up=0,0,0", "up=0,0,0 is no direction"},
+             {"from=0,0,0", "from=0,0,0 is no direction"},
+             {"eye=1,1,1:target=1,1,1", "the same point"},
+             {"eye=1e39,0,0", "too far off"},
+             {"target=0,1e300,0", "too far off"},
+             {"focal=1e-50", "focal"},
+             {"focal=1e300", "focal"},
+             {"focal=1e-9", "no pixel is covered"},
+             {"eye=0,0,99:target=0,0,100", "no pixel is covered"}}) {
+        fs::path const picture = scratch() / "unseen.png";
+        Result const r =
+            run("draw golem --size 64x64 --camera " + camera + " -o " + picture.string());
+        EXPECT_EQ(r.status, 2) << camera;
+        EXPECT_NE(r.err.find("--camera"), std::string::npos) << camera << r.err;
+        EXPECT_NE(r.err.find(word), std::string::npos) << camera << r.err;
+        EXPECT_FALSE(fs::exists(picture));
+    }
+}
+
+TEST(Program, AutomaticFramingIsTheSameForBothSignsOfADisplacement)
+{
+    auto const eye = [](std::string const& scale) {
+        return draw_json("golem --size 32x32 --displace studs --displace-scale " +
+                         scale)["config"]["camera_eye"];
+    };
+    EXPECT_EQ(eye("-2"), eye("2"));
+    EXPECT_NE(eye("-2"), eye("0"));
+}
+
 TEST(Program, LanesThatTheBuildLacksNameItsOption)
 {
     for (int lanes : {4, 8, 16}) {
@@ -285,11 +541,12 @@ TEST(Program, FacesOfAnyKindAreDrawnWithWarningsThatCountThem)
     EXPECT_EQ(r.status, 0);
     EXPECT_TRUE(fs::exists(out));
     for (char const* warning :
-         {"warning: face 5 names a vertex twice in a row and loses the repetition\n",
-          "warning: face 8 has fewer than three corners at different vertices: left out\n",
-          "warning: vertex 11 is in no face: left out\n",
-          "warning: an edge at vertex 1 has more than two faces",
-          "warning: 2 vertices have several fans of faces: each gets a copy of them; the first is "
+         {"fin.obj:16: face 5 names a vertex twice in a row and loses the repetition\n",
+          "fin.obj:19: face 8 has fewer than three corners at different vertices: left out\n",
+          "fin.obj:11: vertex 11 is in no face: left out\n",
+          "fin.obj:1: an edge at vertex 1 has more than two faces",
+          "fin.obj:1: 2 vertices have several fans of faces: each gets a copy of them; the first "
+          "is "
           "vertex 1\n"})
         EXPECT_NE(r.err.find(warning), std::string::npos) << warning << r.err;
     Json const check = Json::parse(run("check " + cage.string() + " --json -").out);

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cmath>
+
 namespace tessemu {
 namespace {
 
@@ -25,8 +27,9 @@ std::string message_of(std::string const& text)
 
 TEST(ObjReader, ReadsFacesAsTheyAre)
 {
-    ObjFile const f =
-        read_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nf 1 2 3 4\nf 2/1/1 5//2 3/7\n", "a");
+    ObjFile const f = read_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nvn 0 0 1\nf 1 2 3 4\n"
+                               "f 2//1 5//-1 -3\n",
+                               "a");
     ASSERT_EQ(f.mesh.faces(), 2u);
     EXPECT_EQ(f.mesh.face(0).size(), 4u);
     EXPECT_EQ(f.mesh.face(1).size(), 3u);
@@ -71,7 +74,8 @@ TEST(ObjReader, ErrorsNameFileLineValueAndLimit)
               "file.obj:1: coordinate '0x1' is not a finite number");
     EXPECT_EQ(message_of(kCube + "f\n"), "file.obj:15: face has no vertices");
     EXPECT_EQ(message_of("v 1 2 3\n"), "file.obj: holds no face (1 vertices)");
-    EXPECT_NE(message_of("v 1 2 1e30\n" + kCube).find("limit is 1000000000"), std::string::npos);
+    EXPECT_EQ(message_of("v 1 2 1e101\n" + kCube),
+              "file.obj:1: coordinate is 1e101, the limit is 1e+100");
 }
 
 // What is to be done with such faces is make_manifold's.
@@ -88,9 +92,12 @@ TEST(ObjReader, WarnsAboutTagsThatItSkips)
 {
     for (char const* tag :
          {"t crease 2/1/0 0 8 2\n", "t crease 2/1/0 0 6 2\n", "t unknown 0/0/0\n", "t crease\n",
-          "t crease 2/1/0 0\n", "t corner 1/1/0 x 2\n", "t hole 1/0/0 6\n"}) {
+          "t crease 2/1/0 0\n", "t corner 1/1/0 x 2\n", "t hole 1/0/0 6\n", "t hole 0/0/0\n",
+          "t crease 4/3/0 0 1 1 2 2\n", "t crease 6/2/0 0 1 1 2 2 3 5 6\n", "t corner 0/1/0 3\n",
+          "t interpolateboundary 0/0/0\n", "t interpolateboundary 1/0/0 3\n"}) {
         ObjFile const f = read_obj(kCube + tag, "a.obj");
-        EXPECT_EQ(f.warnings.size(), 1u) << tag;
+        ASSERT_EQ(f.warnings.size(), 1u) << tag;
+        EXPECT_TRUE(f.warnings[0].starts_with("a.obj:15: ")) << f.warnings[0];
         EXPECT_TRUE(f.mesh.creases.empty());
     }
 }
@@ -114,20 +121,36 @@ RC_GTEST_PROP(ObjReader, AnyTextEitherReadsOrThrowsAFormatError, ())
 
 TEST(ObjReader, NumbersRoundAsTheNearestFloat)
 {
-    // tinyobjloader parses in double before it rounds; these would differ if it parsed in float.
-    ObjFile const f =
-        read_obj("v 0.1 1.17549435e-38 16777217\nv 0.3 -2.5 1e-3\nv 3.4028 7 8\nf 1 2 3\n", "a");
+    // The middle between 1 and the next float, and a little above it: a double does not see that.
+    std::string const middle = "1.000000059604644775390625";
+    ObjFile const f = read_obj("v 0.1 1.17549435e-38 " + middle + "\nv 0.3 -2.5 1e-3\nv " + middle +
+                                   "0000000000001 7 8\nf 1 2 3\n",
+                               "a");
     EXPECT_EQ(f.mesh.positions[0].x, 0.1f);
-    EXPECT_EQ(f.mesh.positions[0].z, 16777216.0f);
+    EXPECT_EQ(f.mesh.positions[0].y, 1.17549435e-38f);
+    EXPECT_EQ(f.mesh.positions[0].z, 1.0f);
     EXPECT_EQ(f.mesh.positions[1].x, 0.3f);
     EXPECT_EQ(f.mesh.positions[1].z, 1e-3f);
+    EXPECT_EQ(f.mesh.positions[2].x, std::nextafter(1.0f, 2.0f));
+}
+
+TEST(ObjReader, PlacesAMeshByTheVerticesOfItsFaces)
+{
+    ObjFile const f = read_obj("v 1000001 0 0\nv 1000002.25 0 0\nv 1000001 1 0\nv 0 1e90 0\n"
+                               "f 1 2 3\n",
+                               "a");
+    EXPECT_TRUE(f.placement.is_moved());
+    auto const& p = f.mesh.positions;
+    EXPECT_EQ(p[1].x - p[0].x, 1.25f);
+    EXPECT_EQ(f.placement.to_file(p[0]), glm::dvec3(1000001, 0, 0));
+    for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::isfinite(p[3][k]));
 }
 
 TEST(ObjReader, ReadsTextureCoordinatesOfFaceCorners)
 {
     ObjFile const obj = read_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
                                  "vt 0 0.25\nvt 1 0.5 7\nvt 0.75 -1e1\n"
-                                 "f 1/1 2/2/9 3/-1 4/1\n",
+                                 "vn 0 0 1\nf 1/1 2/2/1 3/-1 4/1\n",
                                  "a.obj");
     EXPECT_TRUE(obj.warnings.empty());
     ASSERT_EQ(obj.mesh.coordinates.size(), 3u);
@@ -143,9 +166,11 @@ TEST(ObjReader, BadTextureCoordinatesAreDroppedWithALine)
     for (auto const& [rest, line] :
          {std::pair<std::string, std::string>{"vt 0 0\nf 1/1 2/1 3/2\n", "a.obj:5: "},
           {"vt 0 0\nf 1/1 2/1 3\n", "a.obj:5: "},
-          {"vt 0\nf 1/1 2/1 3/1\n", "a.obj:4: "},
+          {"f 1/1 2/1 3/1\n", "a.obj:4: "},
+          {"vt\nf 1/1 2/1 3/1\n", "a.obj:4: "},
+          {"vt 0 0,5\nf 1/1 2/1 3/1\n", "a.obj:4: "},
           {"vt nan 0\nvt inf 1\nf 1/1 2/1 3/1\n", "a.obj:4: "},
-          {"vt 0 1e30\nf 1/1 2/1 3/1\n", "a.obj:5: "},
+          {"vt 0 1e30\nf 1/1 2/1 3/1\n", "a.obj:4: "},
           {"vt 0 0\nf 1/-2 2/1 3/1\n", "a.obj:5: "},
           {"vt 0 0\nf 1/0 2/1 3/1\n", "a.obj:5: "}}) {
         ObjFile const obj = read_obj(vertices + rest, "a.obj");
@@ -154,10 +179,174 @@ TEST(ObjReader, BadTextureCoordinatesAreDroppedWithALine)
         ASSERT_EQ(obj.warnings.size(), 1u) << rest;
         EXPECT_TRUE(obj.warnings[0].starts_with(line)) << obj.warnings[0];
     }
-    // Coordinates that no face uses are nobody's concern.
     ObjFile const obj = read_obj(vertices + "vt 0 0\nf 1 2 3\n", "a.obj");
-    EXPECT_TRUE(obj.warnings.empty());
+    EXPECT_EQ(obj.warnings, std::vector<std::string>{"a.obj:4: no face uses the file's 1 texture "
+                                                     "coordinates: the mesh gets none"});
     EXPECT_TRUE(obj.mesh.face_coordinates.empty());
+}
+
+TEST(ObjReader, ATextureCoordinateOfOneNumberHasVZero)
+{
+    ObjFile const obj =
+        read_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0.5\nvt 1 0.25\nf 1/1 2/2 3/1\n", "a");
+    EXPECT_TRUE(obj.warnings.empty());
+    ASSERT_EQ(obj.mesh.coordinates.size(), 2u);
+    EXPECT_EQ(obj.mesh.coordinates[0], glm::vec2(0.5f, 0));
+    EXPECT_EQ(obj.mesh.coordinates[1], glm::vec2(1, 0.25f));
+}
+
+// Without the line after it, the mesh would lack a vertex or a face.
+TEST(ObjReader, ACommentOrNameThatEndsInABackslashDoesNotContinue)
+{
+    for (char const* line : {"# made by C:\\models\\", "g left\\", "o a \\", "usemtl b\\",
+                             "mtllib C:\\", "nothing \\"}) {
+        std::string text = kCube;
+        text.insert(0, std::string(line) + "\n");
+        text.insert(text.find("f 1 4"), std::string(line) + "\n");
+        ObjFile const f = read_obj(text, "a");
+        EXPECT_EQ(f.mesh.positions.size(), 8u) << line;
+        EXPECT_EQ(f.mesh.faces(), 6u) << line;
+    }
+    // Nor does a comment behind a statement that is read.
+    EXPECT_EQ(read_obj("v 0 0 0 # a \\\n" + kCube, "a").mesh.positions.size(), 9u);
+}
+
+TEST(ObjReader, StatementsThatAreReadContinueAfterABackslash)
+{
+    ObjFile const f = read_obj("v 0 \\\n 0 \\ \r\n0\nv 1 0 0\nv 1 1 0\nl 1 \\\n2\nf 1 2 \\\n3\n"
+                               "t crease 2/1/0 \\\n0 1 2\n",
+                               "a");
+    EXPECT_EQ(f.mesh.positions.size(), 3u);
+    EXPECT_EQ(f.mesh.creases.size(), 1u);
+    EXPECT_EQ(f.lines.faces, std::vector<int>{8});
+    EXPECT_EQ(f.warnings,
+              std::vector<std::string>{"a:6: 'l': lines are left out, only faces make a surface"});
+}
+
+TEST(ObjReader, LinesEndWithLineFeedCarriageReturnOrBoth)
+{
+    for (std::string const end : {"\n", "\r\n", "\r"}) {
+        std::string text = "# a\n\n" + kCube + "f 1 2 nine"; // without a last line end
+        for (std::size_t i = 0; (i = text.find('\n', i)) != std::string::npos; i += end.size())
+            text.replace(i, 1, end);
+        EXPECT_EQ(message_of(text), "file.obj:17: 'nine' is not a vertex index");
+        text.resize(text.rfind(end));
+        EXPECT_EQ(read_obj(text, "a").mesh.faces(), 6u);
+    }
+}
+
+TEST(ObjReader, RefusesWhatIsNoText)
+{
+    EXPECT_EQ(message_of(""), "file.obj: is empty");
+    EXPECT_EQ(message_of(std::string("\xff\xfev\0", 4)),
+              "file.obj: is UTF-16 text; save it as UTF-8");
+    EXPECT_NE(message_of(kCube + std::string("\0", 1)).find("file.obj:15: byte 136 is zero"),
+              std::string::npos)
+        << message_of(kCube + std::string("\0", 1));
+}
+
+TEST(ObjReader, NumbersAreWholeDecimalWords)
+{
+    auto const at = [](std::string const& number) {
+        return read_obj("v " + number + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a")
+            .mesh.positions[0]
+            .x;
+    };
+    EXPECT_EQ(at("+1.5"), 1.5f);
+    EXPECT_EQ(at("-.5"), -0.5f);
+    EXPECT_EQ(at("1."), 1.0f);
+    EXPECT_EQ(at("+1E+2"), 100.0f);
+    EXPECT_EQ(at("1e-999"), 0.0f);
+    EXPECT_EQ(at("0." + std::string(400, '0') + "1"), 0.0f);
+    for (char const* word : {"1.0abc", "1,5", "1e", "--1", "+-1", "0x10", "1_000", "inf", "NaN",
+                             "1.2.3", "1d5", "\xc2\xa0", "."})
+        EXPECT_NE(message_of("v " + std::string(word) + " 0 0\n" + kCube).find("file.obj:1: "),
+                  std::string::npos)
+            << word;
+    EXPECT_EQ(message_of("v 1,5 0 0\n" + kCube),
+              "file.obj:1: coordinate '1,5' is not a finite number; decimals follow a point");
+    EXPECT_NE(message_of("v 0 1e999 0\n" + kCube).find("file.obj:1: coordinate is 1e999"),
+              std::string::npos);
+}
+
+TEST(ObjReader, WarnsOfEachKindOfLineThatIsLost)
+{
+    for (auto const& [lines, warning] : std::vector<std::pair<std::string, std::string>>{
+             {"l 1 2\nl 2 3\n", "'l': lines are left out, only faces make a surface (and 1 more)"},
+             {"p 1\n", "'p': points are left out, only faces make a surface"},
+             {"vp 1\ncstype bezier\ndeg 3\ncurv 0 1 1 2\nend\n",
+              "'vp': free-form curves and surfaces are left out, only faces make a surface (and 4 "
+              "more)"},
+             {"call a.obj\n", "'call': other files and commands are left out, only faces make a "
+                              "surface"},
+             {"face 1 2 3\nV 1 2 3\n",
+              "'face' begins no statement of an OBJ file: left out (and 1 more)"},
+             {"vn 0 0\n", "normal is not three finite numbers; normals are not used"},
+             {"vn 0 0 1\nf 1//2 2//2 3//2\n",
+              "normal index is 2, the file has 1: normals are not used"},
+             {"f 1//-1 2 3\n",
+              "normal index is -1, the file has 0 before this line: normals are not used"},
+             {"v 1 2 3 0.5\n",
+              "vertex has the weight 0.5: left out, only free-form surfaces have weights"},
+             {"v 1 2 3 1 0 0\nv 1 2 3 0 1 0\n",
+              "vertex has 6 numbers: those after the first 3, as of a colour, are left out (and 1 "
+              "more)"},
+             {"t hole 1/0/0 1 2\n",
+              "tag 'hole' announces 1/0/0 values and has 2: the rest is left out"},
+             {"t creasemethod 0/0/1 chaikin\n",
+              "tag 'creasemethod' is not honoured but for 'normal'"},
+             {"t facevaryinginterpolateboundary 1/0/0 1\n",
+              "tag 'facevaryinginterpolateboundary' is not honoured: texture coordinates are "
+              "linear "
+              "in faces, as by rule 5"},
+         }) {
+        std::vector<std::string> told;
+        ObjFile const f =
+            read_obj(kCube + lines, "a.obj", [&](std::string const& w) { told.push_back(w); });
+        ASSERT_EQ(f.warnings.size(), 1u) << lines;
+        int const line = f.warnings[0].starts_with("a.obj:16: ") ? 16 : 15;
+        EXPECT_EQ(f.warnings[0], "a.obj:" + std::to_string(line) + ": " + warning);
+        EXPECT_EQ(told, f.warnings);
+    }
+    EXPECT_TRUE(read_obj(kCube + "g a\no b\ns off\nusemtl c\nmtllib d\nvn 0 0 1\nv 1 2 3 1\n", "a")
+                    .warnings.empty());
+}
+
+TEST(ObjReader, WarningsStandBeforeTheErrorThatFollows)
+{
+    std::vector<std::string> told;
+    EXPECT_THROW(read_obj("l 1 2\n" + kCube + "f 1 2 9\n", "a.obj",
+                          [&](std::string const& w) { told.push_back(w); }),
+                 FormatError);
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_TRUE(told[0].starts_with("a.obj:1: "));
+}
+
+// As regression/common/far_utils.h has it.
+TEST(ObjReader, TagsOfSeveralItemsHaveOneSharpnessOrOneForEach)
+{
+    auto const creases = [](std::string const& tag) {
+        std::vector<float> sharpness;
+        for (auto const& c : read_obj(kCube + tag, "a").mesh.creases)
+            sharpness.insert(sharpness.end(), {float(c.a), float(c.b), c.sharpness});
+        return sharpness;
+    };
+    EXPECT_EQ(creases("t crease 4/1/0 0 1 2 3 2.5\n"),
+              (std::vector<float>{0, 1, 2.5f, 2, 3, 2.5f}));
+    EXPECT_EQ(creases("t crease 4/2/0 0 1 2 3 2 3\n"), (std::vector<float>{0, 1, 2, 2, 3, 3}));
+    EXPECT_EQ(creases("t crease 4/4/0 0 1 2 3 2 7 3 7\n"), (std::vector<float>{0, 1, 2, 2, 3, 3}));
+    EXPECT_EQ(creases("t crease 4/3/0 0 1 2 3 2 7 3\n"), (std::vector<float>{0, 1, 2, 2, 3, 3}));
+    // The last one holds; what is not sharp is none.
+    EXPECT_EQ(creases("t crease 2/1/0 0 1 2\nt crease 2/1/0 1 0 3\n"),
+              (std::vector<float>{1, 0, 3}));
+    EXPECT_EQ(creases("t crease 2/1/0 0 1 2\nt crease 2/1/0 0 1 -1\n"), std::vector<float>{});
+    EXPECT_EQ(creases("t crease 2/1/0 0 1 inf\n"), (std::vector<float>{0, 1, 10}));
+
+    auto const corners =
+        read_obj(kCube + "t corner 2/2/0 3 4 1 2\nt corner 2/1/0 5 6 4\n", "a").mesh.corners;
+    ASSERT_EQ(corners.size(), 4u);
+    EXPECT_EQ(corners[1].sharpness, 2);
+    EXPECT_EQ(corners[3].sharpness, 4);
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "pipeline/mesh/connectivity.h"
 
 #include "io/model.h"
+#include "pipeline/commands/patch_mesh.h"
 #include "pipeline/schemes/gregory/stencils.h"
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/files.h"
@@ -116,6 +117,72 @@ TEST(GregoryStencil, HolesAndBoundaryRuleNoneAreNotDrawn)
     m.holes.clear();
     m.boundary = BoundaryRule::None;
     EXPECT_LT(drawn(), faces);
+}
+
+namespace {
+// 3 x 3 quads with their faces' numbers from 0 in rows.
+ControlMesh grid3()
+{
+    ControlMesh m;
+    for (std::uint32_t i = 0; i < 16; ++i) m.positions.emplace_back(i % 4, i / 4, 0);
+    for (std::uint32_t f = 0; f < 9; ++f) {
+        std::uint32_t const v = f / 3 * 4 + f % 3;
+        std::uint32_t const face[] = {v, v + 1, v + 5, v + 4};
+        m.add_face(face);
+    }
+    m.boundary = BoundaryRule::None;
+    return m;
+}
+
+std::set<std::uint32_t> drawn_faces(ControlMesh const& mesh)
+{
+    SchemeOnMesh const on = build_scheme(find_scheme("gregory-stencil"), mesh);
+    std::vector<std::string> warnings;
+    std::vector<char> const hidden = hidden_faces(*on.mesh, warnings);
+    std::set<std::uint32_t> out;
+    for (std::uint32_t f = 0; f < hidden.size(); ++f)
+        if (!hidden[f]) out.insert(on.mesh->base().file_face(on.mesh->place(f).face));
+    return out;
+}
+} // namespace
+
+// OpenSubdiv: a face is a hole if a vertex of it has a boundary edge that is not infinitely sharp.
+TEST(BoundaryRuleNone, KeepsFacesAmongInfinitelySharpBoundaryEdges)
+{
+    ControlMesh m = grid3();
+    EXPECT_EQ(drawn_faces(m), std::set<std::uint32_t>{4});
+    m.creases = {{0, 1, 10}, {2, 1, 10}, {2, 3, 12}};
+    EXPECT_EQ(drawn_faces(m), (std::set<std::uint32_t>{1, 4}));
+    m.creases[1].sharpness = 9.5f;
+    EXPECT_EQ(drawn_faces(m), std::set<std::uint32_t>{4});
+}
+
+// A fin on an inner edge cuts the mesh there; the file has no boundary at that edge.
+TEST(BoundaryRuleNone, ACutIsNoBoundary)
+{
+    ControlMesh m = grid3();
+    m.positions.emplace_back(1, 1, 1);
+    m.positions.emplace_back(2, 1, 1);
+    for (auto const& c : {std::pair(5u, 6u), {6u, 17u}, {17u, 16u}, {16u, 5u}})
+        m.creases.push_back({c.first, c.second, 10}); // the fin's own edges
+    std::uint32_t const fin[] = {5, 6, 17, 16};
+    m.add_face(fin);
+    EXPECT_EQ(drawn_faces(m), (std::set<std::uint32_t>{4, 9}));
+    m.creases.pop_back(); // one of them is soft: it is at vertex 5, of whatever copy
+    EXPECT_EQ(drawn_faces(m), std::set<std::uint32_t>{});
+}
+
+TEST(BoundaryRuleNone, TheRuleIsAboutTheFilesFacesHoweverOftenTheyAreSplit)
+{
+    ControlMesh m = grid3();
+    m.creases = {{0, 1, 10}, {2, 1, 10}, {2, 3, 10}};
+    for (int steps : {0, 1, 2}) {
+        SchemeOnMesh const on =
+            build_scheme(find_scheme("gregory-stencil"), m, {.subdivide = steps});
+        std::size_t patches = 0;
+        for (PatchCount const& c : on.patches->patch_counts()) patches += c.patches;
+        EXPECT_EQ(patches, 2u << (2 * steps));
+    }
 }
 
 } // namespace

@@ -29,8 +29,7 @@ private:
     }
     PatchStencils stencils(std::size_t kind, Neighbourhood const& patch) const override
     {
-        return make_acc_stencils(patch, kind == kRegularQuad,
-                                 mesh().base().boundary == BoundaryRule::EdgeOnly);
+        return make_acc_stencils(patch, kind == kRegularQuad, mesh().base().smooth_corners());
     }
     HullShader hull_shader(std::size_t kind, RowBuffers const& buffers,
                            SurfaceSettings const& s) const override

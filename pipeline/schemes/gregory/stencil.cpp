@@ -22,7 +22,7 @@ public:
     {
         parameters_.lambda_scale = parameters.number("lambda");
         parameters_.r_scale = parameters.number("r");
-        parameters_.smooth_corners = mesh().base().boundary == BoundaryRule::EdgeOnly;
+        parameters_.smooth_corners = mesh().base().smooth_corners();
         make_tables();
     }
 

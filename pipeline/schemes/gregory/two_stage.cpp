@@ -21,7 +21,7 @@ public:
                                             {{"Gregory triangle", PatchClass::Triangle}, 3}}),
           lambda_scale_(parameters.number("lambda")),
           r_(float(parameters.number("r"))),
-          smooth_corners_(mesh().base().boundary == BoundaryRule::EdgeOnly)
+          smooth_corners_(mesh().base().smooth_corners())
     {
         for (double c : make_ring_constants(lambda_scale_)) constants_.push_back(float(c));
         make_tables();
