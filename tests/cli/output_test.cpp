@@ -324,7 +324,8 @@ TEST_F(Output, NamesAreBytes)
     std::string const name = "caf\xe9 \\ \xc3\xa9\xff.obj", shown = "caf\\xE9 \\x5C \xc3\xa9\\xFF";
     fs::create_directories(here / "f\xfc");
     std::ofstream(here / "f\xfc" / name)
-        << "v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nf 1 2 3 4\nt odd\xffity 0/0/0\n";
+        << "v 0 0 0\nv 1 0 0\nv 1 1 0.5\nv 0 1 0\nv 2 0 0\nv 2 1 0\nf 1 2 3 4\nf 2 5 6 3\n"
+           "t odd\xffity 0/0/0\n";
     std::string const model = "f\xfc/'" + name + "'";
     for (std::string const& verb :
          {std::string("draw --size 16x16"), std::string("check --size 16x16 --tess 1 --rays 0"),

@@ -177,7 +177,8 @@ TEST(Program, WarningsArePrintedBeforeTheErrorThatFollows)
 TEST(Program, ReadsAModelFromStandardInput)
 {
     fs::path const cage = scratch() / "square.obj", out = scratch() / "in.ply";
-    std::ofstream(cage) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\np 1\nf 1 2 3 4\n";
+    std::ofstream(cage) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\np 1\nf 1 2 3 4\n"
+                           "v 2 0 0\nv 2 1 0\nf 2 5 6 3\n"; // with an edge to check
     for (std::string const& verb :
          {std::string("draw - --size 16x16"), std::string("info -"),
           std::string("check - --tess 2"), std::string("compare -"),

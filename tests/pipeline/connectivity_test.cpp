@@ -86,21 +86,6 @@ TEST(GregoryStencils, SharedControlPointsHaveEqualWeightsInEveryPatch)
     }
 }
 
-TEST(GregoryStencil, RefusesAPatchPastThirtyTwoInputsAndNamesIt)
-{
-    TESSEMU_NEEDS_SHARED("models/bad/valence40.obj");
-    ControlMesh const m = load_model(test::shared("models/bad/valence40.obj").string()).mesh;
-    try {
-        (void)build_scheme(find_scheme("gregory-stencil"), m);
-        FAIL();
-    } catch (LimitError const& e) {
-        EXPECT_NE(std::string(e.what()).find("valences 40, 3, 2, 3"), std::string::npos)
-            << e.what();
-        EXPECT_GT(e.value, 32u);
-        EXPECT_EQ(e.limit, 32u);
-    }
-}
-
 TEST(GregoryStencil, HolesAndBoundaryRuleNoneAreNotDrawn)
 {
     ControlMesh m = load_model("saddle_star").mesh;

@@ -50,14 +50,14 @@ TEST(SchemeParameters, DefaultsAreTheNumberAndTheFirstWord)
     EXPECT_EQ(p.values().size(), 3u);
 }
 
-TEST(SchemeParameters, GivenOnesReplaceTheirDefaultsAloneTheLastOneLast)
+TEST(SchemeParameters, GivenOnesReplaceTheirDefaultsAlone)
 {
-    Parameters const p =
-        resolve_parameters(Sample().info(), {{"gain", "2.25"}, {"rule", "none"}, {"gain", "-1"}});
+    Parameters const p = resolve_parameters(Sample().info(), {{"gain", "-1"}, {"rule", "none"}});
     EXPECT_EQ(p.number("gain"), -1);
     EXPECT_EQ(p.word("rule"), "none");
     EXPECT_EQ(p.number("free"), 7);
     EXPECT_EQ(resolve_parameters(Sample().info(), {{"free", "1e300"}}).number("free"), 1e300);
+    EXPECT_NE(refusal({{"gain", "2.25"}, {"rule", "none"}, {"gain", "-1"}}), "");
 }
 
 TEST(SchemeParameters, RefusalsNameTheParameterTheValueAndWhatIsAllowed)
