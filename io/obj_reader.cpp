@@ -338,6 +338,11 @@ private:
         case Meaning::Command:
             return left_out("other files and commands");
         case Meaning::Unknown:
+            if (std::string_view("+-.0123456789").find(keyword[0]) != std::string_view::npos)
+                fail(s.line, "'" + shown(keyword) +
+                                 "' begins the line, which is no statement: the rest of another "
+                                 "that was cut? One that ends in a '\\' goes on in the next line, "
+                                 "even if that is empty");
             notes_.count("unknown", s.line, [&] {
                 return fmt::format("'{}' begins no statement of an OBJ file: left out",
                                    shown(keyword));

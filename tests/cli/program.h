@@ -5,6 +5,9 @@
 
 #include "tests/support/files.h"
 
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -45,6 +48,14 @@ inline Result run_command(std::string const& command,
 inline Result run(std::string const& arguments, std::filesystem::path const& input = "/dev/null")
 {
     return run_command(std::string(TESSEMU_PROGRAM) + " " + arguments, input);
+}
+
+/// The JSON of draw with these arguments.
+inline nlohmann::ordered_json draw_json(std::string const& arguments)
+{
+    Result const r = run("draw " + arguments + " --json -");
+    EXPECT_EQ(r.status, 0) << r.err;
+    return nlohmann::ordered_json::parse(r.out);
 }
 
 } // namespace tessemu::test

@@ -269,6 +269,14 @@ TEST(ObjReader, NumbersAreWholeDecimalWords)
               std::string::npos);
 }
 
+TEST(ObjReader, RefusesALineOfNumbersAlone)
+{
+    std::string const what = "file.obj:10: '3' begins the line, which is no statement";
+    EXPECT_EQ(message_of("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n\n\nf 1 2 \\\n\n\n3 4\n")
+                  .substr(0, what.size()),
+              what);
+}
+
 TEST(ObjReader, WarnsOfEachKindOfLineThatIsLost)
 {
     for (auto const& [lines, warning] : std::vector<std::pair<std::string, std::string>>{
