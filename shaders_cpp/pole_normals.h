@@ -4,7 +4,8 @@
 //
 // The normal there is the mean of the faces around the pole, each by its area: the same from all
 // patches, in a pose too. A dispatch makes it before the draws; hull shaders hand it on instead of
-// the vertex's own. An edge whose two ends are one pole is collapsed: it is the pole all along.
+// the vertex's own. An edge whose two ends are one pole is collapsed: its transversal field is zero,
+// and so are the cross products along it, where domain shaders take the nearer corner's normal.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -58,11 +59,11 @@ struct PoleNormalShader {
                         return area + cross(V(x2 - x0), V(x3 - x1));
                     },
                     area);
-            V const n = unit_or(area, T(0), [&] { return z; });
+            V const n = unit_or(area, [&] { return z; });
             // Across the axis that n is least along.
             T const ax = abs(n.x), ay = abs(n.y), az = abs(n.z);
             V const axis = select_record((ax <= ay) & (ax <= az), x, select_record(ay <= az, y, z));
-            V const a = unit_or(V(cross(axis, n)), T(0), [&] { return x; });
+            V const a = unit_or(V(cross(axis, n)), [&] { return x; });
             V const b = cross(n, a);
             Int const out = pole * Int(3 * kVectors);
             int i = 0;
@@ -77,7 +78,7 @@ struct PoleNormals {
     Buffer<float> normals; ///< of PoleNormalShader
 
     /// \param which  PoleNormalShader::kNormal, or one of the two tangents
-    template <class T> float3<T> vector(int_of<T> pole, int_of<T> which) const
+    template <class T> [[gnu::noinline]] float3<T> vector(int_of<T> pole, int_of<T> which) const
     {
         using Int = int_of<T>;
         Int const at = (pole * Int(PoleNormalShader::kVectors) + which) * Int(3);

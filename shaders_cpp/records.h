@@ -42,20 +42,20 @@ template <class T> constexpr float3<T> unit_or_zero(float3<T> const& v)
     return {T(v.x * inverse), T(v.y * inverse), T(v.z * inverse)};
 }
 
-/// v / |v| where |v|^2 is above `least`; elsewhere `otherwise()`, as a unit vector.
+/// v / |v|; where v is 0 or not a number `otherwise()`, a unit vector.
 ///
 /// \cost  that of unit_or_zero, and `otherwise` in the lanes that need it
 template <class T, class Otherwise>
-constexpr float3<T> unit_or(float3<T> const& v, T const& least, Otherwise const& otherwise)
+constexpr float3<T> unit_or(float3<T> const& v, Otherwise const& otherwise)
 {
-    Routine<T> const here("unit_or_zero"); // which it is, but for the choice
+    Routine<T> const here("unit_or_zero"); // which it is, but for that
     T const squared = dot(v, v);
     T const length = sqrt(squared);
-    mask_of<T> const long_enough = squared > least;
-    T const inverse = T(1) / select(long_enough, length, T(1));
+    mask_of<T> const exists = squared > T(0);
+    T const inverse = T(1) / select(exists, length, T(1));
     float3<T> const unit(T(v.x * inverse), T(v.y * inverse), T(v.z * inverse));
     return when(
-        !long_enough, [&]() -> float3<T> { return otherwise(); }, unit);
+        !exists, [&]() -> float3<T> { return otherwise(); }, unit);
 }
 
 /// Position and two tangents whose cross product is the surface normal's direction. Their common

@@ -12,8 +12,6 @@
 #include "shaders_cpp/bezier.h"
 #include "shaders_cpp/domain_edges.h"
 
-#include <limits>
-
 namespace tessemu {
 
 /// A register of the patch constants.
@@ -23,25 +21,12 @@ namespace tessemu {
 /// each.
 template <class T> struct EdgeRegister {
     float3<T> vector;
-    /// In register 4k: 1 if the edge's canonical direction runs from corner k+1 to k, else 0. In
-    /// register 4k + 1: the squared length above which the edge has a normal, 0, or infinity where
-    /// the edge is collapsed: there its normals are its corners'.
-    T reversed;
+    T reversed; ///< of the edge: 1 if its canonical direction runs from corner k+1 to k, else 0
     static constexpr auto signature()
     {
         return std::tuple{&EdgeRegister::vector, &EdgeRegister::reversed};
     }
 };
-
-/// Register m of an edge, or, with both masks off, of a corner.
-template <class T>
-constexpr EdgeRegister<T> edge_register(float3<T> const& vector, int_of<T> m, mask_of<T> reversed,
-                                        mask_of<T> collapsed)
-{
-    using Int = int_of<T>;
-    T const least = select(collapsed, T(std::numeric_limits<float>::infinity()), T(0));
-    return {vector, select(m == Int(1), least, select(reversed, T(1), T(0)))};
-}
 
 /// A patch's edge: a cubic, and the field u(t) along it that the scheme's edge condition is about,
 /// B2[first, p2 - p1, last] but for a common factor. The cubic's own derivative has first = p1 - p0
@@ -128,30 +113,20 @@ template <class Inside> struct WatertightPatch {
         auto boundary = at.on[0] | at.on[1] | at.on[2];
         if constexpr (kSides == 4) boundary = boundary | at.on[3];
         float3<T> const zero(T(0), T(0), T(0));
-        Point<T> const inside = when(
+        SurfacePoint<T> const inside = when(
             !boundary,
             [&] {
                 TangentFrame<T> const frame = evaluate<T>(in, patch, registers);
-                return Point<T>{frame.position, cross(frame.du, frame.dv), T(0)};
+                return SurfacePoint<T>{frame.position, cross(frame.du, frame.dv)};
             },
-            Point<T>{zero, zero, T(0)});
-        Point<T> const s = when(
+            SurfacePoint<T>{zero, zero});
+        SurfacePoint<T> s = when(
             boundary, [&] { return boundary_point<T>(patch, registers, at); }, inside);
-        return {s.position, unit_or(s.normal, s.least,
-                                    [&] { return nearest_corner_normal<T>(registers, at); })};
+        s.normal = unit_or(s.normal, [&] { return nearest_corner_normal<T>(registers, in); });
+        return s;
     }
 
 private:
-    /// Its normal is one where it is longer than the square root of `least`.
-    template <class T> struct Point {
-        float3<T> position, normal;
-        T least;
-        static constexpr auto signature()
-        {
-            return std::tuple{&Point::position, &Point::normal, &Point::least};
-        }
-    };
-
     template <class T>
     constexpr TangentFrame<T> evaluate(DomainInput<T> const& in, Patch<T> const& patch,
                                        Registers<T> const& registers) const
@@ -164,46 +139,48 @@ private:
 
     /// Edges through edge_point in canonical direction, corners from vertex data.
     template <class T>
-    static constexpr Point<T> boundary_point(Patch<T> const& patch, Registers<T> const& registers,
-                                             DomainEdges<kSides, T> const& at)
+    static constexpr SurfacePoint<T> boundary_point(Patch<T> const& patch,
+                                                    Registers<T> const& registers,
+                                                    DomainEdges<kSides, T> const& at)
     {
         constexpr int N = kSides;
         float3<T> const zero(T(0), T(0), T(0));
-        Point<T> s{zero, zero, T(0)};
+        SurfacePoint<T> s{zero, zero};
         for (int k : loop<T>(N)) {
             int const next = (k + 1) % N, previous = (k + N - 1) % N;
             auto const inside_edge = at.on[k] & !(at.on[next] | at.on[previous]);
             s = when(
                 inside_edge,
                 [&] {
-                    EdgeRegister<T> const first = registers[4 * k], second = registers[4 * k + 1];
-                    float3<T> const W[4] = {first.vector, second.vector,
+                    EdgeRegister<T> const first = registers[4 * k];
+                    float3<T> const W[4] = {first.vector, registers[4 * k + 1].vector,
                                             registers[4 * k + 2].vector,
                                             registers[4 * k + 3].vector};
                     EdgeCurve<T> const e = Inside::template edge<T>(patch, k);
                     auto const back = first.reversed > T(0);
                     T const t = select(back, T(1) - at.t[k], at.t[k]);
-                    SurfacePoint<T> const p = edge_point<T>(select(back, reversed(e), e), W, t);
-                    return Point<T>{p.position, p.normal, second.reversed};
+                    return edge_point<T>(select(back, reversed(e), e), W, t);
                 },
                 s);
             s = when(
                 at.on[k] & at.on[previous],
                 [&] {
-                    return Point<T>{Inside::template corner<T>(patch, k),
-                                    Inside::template corner_normal<T>(registers, k), T(0)};
+                    return SurfacePoint<T>{Inside::template corner<T>(patch, k),
+                                           Inside::template corner_normal<T>(registers, k)};
                 },
                 s);
         }
         return s;
     }
 
-    /// The normal of the corner at the nearer end of the point's edge, the end that comes first in
-    /// canonical direction where both are as near; inside, of corner 0; z where that has none.
+    /// Where the point has no normal of its own: that of the corner at the nearer end of its edge,
+    /// the end that comes first in canonical direction where both are as near; inside, of corner 0;
+    /// z where that has none. Out of line: few points need it.
     template <class T>
-    static constexpr float3<T> nearest_corner_normal(Registers<T> const& registers,
-                                                     DomainEdges<kSides, T> const& at)
+    [[gnu::noinline]] static constexpr float3<T>
+    nearest_corner_normal(Registers<T> const& registers, DomainInput<T> const& in)
     {
+        DomainEdges<kSides, T> const at = domain_edges<kDomain>(in);
         float3<T> n = Inside::template corner_normal<T>(registers, 0);
         for (int k : loop<T>(kSides))
             n = when(
@@ -217,7 +194,7 @@ private:
                     return select(t <= T(0.5), select(back, b, a), select(back, a, b));
                 },
                 n);
-        return unit_or(n, T(0), [] { return float3<T>(T(0), T(0), T(1)); });
+        return unit_or(n, [] { return float3<T>(T(0), T(0), T(1)); });
     }
 };
 

@@ -53,7 +53,7 @@ struct PhongTriangle {
         float3<T> const q = qa + qb + qc;
         // Opposite normals cancel in between: there is z, the same from both sides of an edge.
         float3<T> const normal =
-            unit_or(float3<T>(na + nb + nc), T(0), [] { return float3<T>(T(0), T(0), T(1)); });
+            unit_or(float3<T>(na + nb + nc), [] { return float3<T>(T(0), T(0), T(1)); });
         return {float3<T>(T(1 - alpha) * p + T(alpha) * q), normal};
     }
 };

@@ -219,15 +219,17 @@ struct StencilHullShader {
         mask_of<T> const pole = (corner_row >= Int(kPole)) & (id >= Int(4 * kSides));
         Int const own_row = select(pole, Int(points), corner_row + (id & Int(1)));
         float3<T> const row = rows.template row<T>(patch, in, select(on_edge, edge_row, own_row));
+        auto const collapsed = bit(EdgeBits::kCollapsed);
         float3<T> const v = when(
-            pole,
+            pole | collapsed,
             [&]() -> float3<T> {
-                return poles.vector<T>(corner_row - Int(kPole),
-                                       Int(PoleNormalShader::kTangents) + (id & Int(1)));
+                float3<T> const tangent = poles.vector<T>(
+                    corner_row - Int(kPole), Int(PoleNormalShader::kTangents) + (id & Int(1)));
+                return select(pole, tangent, float3<T>(T(0), T(0), T(0)));
             },
             row);
         auto const negative = on_edge & (m >= Int(2));
-        return edge_register<T>(select(negative, -v, v), m, reversed, bit(EdgeBits::kCollapsed));
+        return {select(negative, -v, v), select(reversed, T(1), T(0))};
     }
 
     template <class T>

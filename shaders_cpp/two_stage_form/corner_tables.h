@@ -96,7 +96,6 @@ template <int kSides_, class Weight = float> struct CornerTables {
         mask_of<T> pole;      ///< the corner is a pole
         mask_of<T> negative;  ///< what is stored is -E_which
         mask_of<T> far;       ///< E_which belongs to corner k+1, else to corner k
-        int_of<T> place;      ///< m
         int_of<T> which;      ///< 0 to 3
         int_of<T> corner;     ///< whose vertex E_which or the normal is made from
     };
@@ -119,15 +118,14 @@ template <int kSides_, class Weight = float> struct CornerTables {
                 mask_of<T>(corner & bit(Int(24) + (id & Int(3)))),
                 mask_of<T>(on_edge & (m >= Int(2))),
                 far,
-                m,
                 which,
                 select(on_edge, select(far, next<T>(edge), edge), id - Int(4 * kSides))};
     }
     template <class T>
     static EdgeRegister<T> packed(FieldRegister<T> const& r, float3<T> const& value)
     {
-        return edge_register<T>(select(r.negative, -value, value), r.place, r.reversed,
-                                r.collapsed);
+        float3<T> const w = select(r.collapsed, float3<T>(T(0), T(0), T(0)), value);
+        return {select(r.negative, -w, w), select(r.reversed, T(1), T(0))};
     }
 
     /// The normal's direction at a corner: its vertex's, or its pole's.
