@@ -293,7 +293,8 @@ std::optional<StencilForm::Tables> flipped_weight(StencilForm const& form, std::
     return out;
 }
 
-// The same of a wide patch, whose weights are its own: its corners' limit points are its first rows.
+// The same of a wide patch, whose weights are its own: its corners' limit points are its first
+// rows.
 std::optional<StencilForm::Tables> flipped_wide_weight(StencilForm const& form, std::size_t group,
                                                        std::size_t patch)
 {

@@ -5,6 +5,12 @@
 
 namespace tessemu {
 
+AnotherWay another_way_of(std::size_t patches, std::uint32_t first_face, std::string const& what)
+{
+    return {first_face,
+            std::to_string(patches) + (patches == 1 ? " patch has " : " patches have ") + what};
+}
+
 void VertexSource::bind(DrawCall& call) const
 {
     call.set_vertices(floats, read);

@@ -25,6 +25,8 @@ struct AnotherWay {
     std::uint32_t face; ///< the first, by its number in the file
     std::string what;   ///< how many, why and how, in the user's words
 };
+/// "3 patches have" and what.
+AnotherWay another_way_of(std::size_t patches, std::uint32_t first_face, std::string const& what);
 
 /// Holds its tables and index buffers; made once, it gives commands for any factor, machine or
 /// view, so sweeps pay for tables once.

@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "emu/hull_shader.h"
 #include "pipeline/forms/vertex_stencils.h"
 
 #include <array>
@@ -14,7 +15,9 @@ namespace tessemu {
 /// E_1 as corner k has them, E_2 and E_3 as corner k+1 has them), then for each corner pairs of
 /// tangents whose cross product is the normal there: a pair for each edge at which the vertex's
 /// ring may begin, because patches of one type share these rows though their corners' rings begin
-/// at different edges, and the normal's bits must be the vertex's own (boundary: one pair).
+/// at different edges, and the normal's bits must be the vertex's own (boundary: one pair). A patch
+/// with more inputs than a hull shader has shares no rows of tangents: its form makes the pair that
+/// it needs.
 struct PatchStencils {
     int inputs = 0;
     int control_points = 0; ///< rows that are control points
@@ -56,6 +59,7 @@ void add_boundary_rows(PatchStencils& out, std::vector<VertexStencils> const& co
     }
     for (std::size_t i = 0; i < sides; ++i) {
         out.corner_row[i] = int(out.rows.size());
+        if (out.inputs > kMaxControlPoints) continue;
         for (int s = 0; s < corner[i].rings(); ++s) {
             auto const [a, b] = corner[i].tangents(s);
             out.add({a, b});

@@ -122,34 +122,40 @@ void StencilForm::make_tables()
     std::size_t wide = 0;
     int most = 0;
     std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
+    Type* last = nullptr; // of wide patches: rows are large, and live as long as their type's turn
     for (Patch const& p : patches) {
-        Type const& t = types_[p.type];
+        Type& t = types_[p.type];
         find_neighbourhood(topology, p.face, n);
-        if (t.wide()) {
-            add_wide_patch(t, n, p.face);
-            ++wide, most = std::max(most, t.inputs());
-            first = std::min(first, mesh().base().file_face(mesh().place(p.face).face));
-        } else {
+        if (!t.wide()) {
             add_patch(t, n, p.face);
+            continue;
         }
+        if (last != &t) {
+            if (last) last->stencils.rows = {};
+            last = &t;
+            t.stencils = stencils(t.kind, n);
+        }
+        add_wide_patch(t, n, p.face);
+        ++wide, most = std::max(most, t.inputs());
+        first = std::min(first, mesh().base().file_face(mesh().place(p.face).face));
     }
-    for (Type& t : types_) t.stencils.rows.clear();
+    if (last) last->stencils.rows = {};
     if (wide)
-        another_way_ = {first, std::to_string(wide) + (wide == 1 ? " patch has" : " patches have") +
-                                   " more than " + std::to_string(kMaxControlPoints) +
-                                   " inputs (up to " + std::to_string(most) +
-                                   "): a dispatch sums their control points before the draw"};
+        another_way_ = another_way_of(
+            wide, first,
+            "more than " + std::to_string(kMaxControlPoints) + " inputs (up to " +
+                std::to_string(most) + "): a dispatch sums their control points before the draw");
 }
 
 void StencilForm::add_type(std::uint32_t face, Neighbourhood const& n)
 {
-    std::size_t const kind = kind_of(face);
-    types_.push_back(
-        {kind, stencils(kind, n), 0, tables_.weights.size(), tables_.zero_masks.size()});
+    types_.push_back({kind_of(face), {}, 0, tables_.weights.size(), tables_.zero_masks.size()});
     Type& t = types_.back();
     PatchStencils& s = t.stencils;
-    t.rows = s.rows.size();
+    s.inputs = int(n.inputs.size());
     if (t.wide()) return;
+    s = stencils(t.kind, n);
+    t.rows = s.rows.size();
     for (int i = 0; i < s.inputs; ++i)
         for (auto const& row : s.rows) tables_.weights.push_back(float(row[std::size_t(i)]));
     for (auto const& row : s.rows) {
@@ -163,6 +169,8 @@ void StencilForm::add_type(std::uint32_t face, Neighbourhood const& n)
 }
 
 namespace {
+
+constexpr std::size_t kMostTerms = std::size_t(1) << 28; // 2 GiB of tables
 
 // Inputs in ascending global vertex id, in which sums run.
 template <class Index> std::vector<Index> ascending(Neighbourhood const& n)
@@ -242,9 +250,19 @@ void StencilForm::add_wide_patch(Type const& t, Neighbourhood const& n, std::uin
         g.first.push_back(std::uint32_t(g.weights.size()));
     };
     for (int r = 0; r < s.control_points + 4 * n.sides; ++r) add_row(s.rows[std::size_t(r)]);
-    for (int i = 0; i < n.sides; ++i)
-        for (int k = 0; k < 2; ++k)
-            add_row(s.rows[std::size_t(s.corner_row[i] + 2 * n.ring_shift[i] + k)]);
+    for (int i = 0; i < n.sides; ++i) {
+        VertexStencils const corner(n.corner[i], s.inputs,
+                                    mesh().base().boundary == BoundaryRule::EdgeOnly);
+        auto const [a, b] = corner.tangents(n.ring_shift[i]);
+        add_row(a);
+        add_row(b);
+    }
+    if (g.weights.size() > kMostTerms)
+        throw LimitError("terms of the stencils of patches with more than 32 inputs, up to that of "
+                         "face " +
+                             std::to_string(mesh().base().file_face(mesh().place(face).face) + 1) +
+                             ",",
+                         g.weights.size(), kMostTerms);
 }
 
 } // namespace tessemu

@@ -80,9 +80,10 @@ protected:
           kinds_(std::move(kinds))
     {
     }
-    /// Makes the tables: the last line of the scheme's constructor.
-    /// \cost  a table for each connectivity type, then linear in the faces and in the terms of wide
-    ///        patches' rows
+    /// Makes the tables: the last line of the scheme's constructor. Throws LimitError for wide
+    /// patches whose rows have more than 2^28 terms, as around one vertex of 3,000 edges.
+    /// \cost  a table for each connectivity type, linear in the faces, and in the terms of wide
+    ///        patches' rows: some 28 times the square of a pole's valence
     void make_tables();
 
     // What a scheme says. Kinds are numbers in the constructor's list.
@@ -95,7 +96,7 @@ protected:
 private:
     struct Type {
         std::size_t kind;
-        PatchStencils stencils; ///< their rows of wide patches only
+        PatchStencils stencils; ///< without their rows
         std::size_t rows, first_weight, first_mask;
 
         int inputs() const { return stencils.inputs; }

@@ -40,10 +40,10 @@ void TwoStageForm::make_tables()
         first = std::min(first, mesh().base().file_face(mesh().place(f).face));
     }
     if (wide)
-        another_way_ = {first, std::to_string(wide) + (wide == 1 ? " patch has" : " patches have") +
-                                   " a vertex of more than " + std::to_string(RingLayout::kEdges) +
-                                   " edges (up to " + std::to_string(most) +
-                                   "): a dispatch makes their corners before the draw"};
+        another_way_ = another_way_of(
+            wide, first,
+            "a vertex of more than " + std::to_string(RingLayout::kEdges) + " edges (up to " +
+                std::to_string(most) + "): a dispatch makes their corners before the draw");
 }
 
 void TwoStageForm::add_patch(std::uint32_t f, bool wide)

@@ -4,6 +4,7 @@
 #include "pipeline/mesh/limit_constants.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace tessemu {
 
@@ -17,6 +18,7 @@ VertexRings::VertexRings(Topology const& topology)
     for (std::uint32_t v = 0; v < vertices; ++v) {
         auto const ring = topology.ring(v);
         bool const boundary = !ring.empty() && topology.is_boundary(v);
+        assert(ring.size() <= 0xffff);
         rings.push_back(std::uint32_t(entries.size() / 2));
         rings.push_back(std::uint32_t(ring.size()) | (boundary ? 0x10000u : 0u));
         for (HalfEdge h : ring) {

@@ -16,7 +16,7 @@ struct VertexRings {
     std::vector<float> positions; ///< four floats a texel
     int height = 0;               ///< rows of the position texture
 
-    /// Rings of any size. Vertices without faces get an empty one.
+    /// Rings of up to 65,535 faces. Vertices without faces get an empty one.
     explicit VertexRings(Topology const& topology);
 };
 

@@ -26,10 +26,10 @@ StencilRow operator*(double s, StencilRow a)
 // Contributions to each input; sorted before they are summed.
 class VertexStencils::Sum {
 public:
-    explicit Sum(VertexStencils const& of) : of_(of), terms_(of.inputs_) {}
+    explicit Sum(VertexStencils const& of) : of_(of) {}
     Sum& vertex(int i, double w)
     {
-        terms_[std::size_t(i)].push_back(w);
+        terms_.push_back({i, w});
         return *this;
     }
     Sum& middle(int j, double w) { return vertex(of_.v(), w / 2).vertex(of_.d(j), w / 2); }
@@ -48,17 +48,15 @@ public:
     }
     StencilRow row()
     {
-        StencilRow out(terms_.size());
-        for (std::size_t i = 0; i < terms_.size(); ++i) {
-            std::sort(terms_[i].begin(), terms_[i].end());
-            for (double t : terms_[i]) out[i] += t;
-        }
+        std::sort(terms_.begin(), terms_.end());
+        StencilRow out(of_.inputs_);
+        for (auto const& [input, weight] : terms_) out[std::size_t(input)] += weight;
         return out;
     }
 
 private:
     VertexStencils const& of_;
-    std::vector<std::vector<double>> terms_;
+    std::vector<std::pair<int, double>> terms_;
 };
 
 VertexStencils::VertexStencils(CornerNeighbourhood const& corner, int inputs, bool smooth_corners)

@@ -51,13 +51,23 @@ void find_neighbourhood(Topology const& topology, std::uint32_t face, Neighbourh
     out.sides = sides;
     out.rotation = best;
     out.inputs.clear();
+    out.numbers.clear();
     out.key.clear();
     auto const add_to_key = [&](std::uint32_t i) {
         out.key.push_back(char(i));
         out.key.push_back(char(i >> 8));
     };
+    auto const number = [&](std::uint32_t v) {
+        constexpr std::size_t kFew = 40;
+        auto const n = int(out.inputs.size());
+        if (out.inputs.size() < kFew)
+            return int(std::find(out.inputs.begin(), out.inputs.end(), v) - out.inputs.begin());
+        if (out.numbers.empty())
+            for (int i = 0; i < n; ++i) out.numbers.emplace(out.inputs[std::size_t(i)], i);
+        return out.numbers.emplace(v, n).first->second;
+    };
     auto const local = [&](std::uint32_t v) {
-        auto const i = int(std::find(out.inputs.begin(), out.inputs.end(), v) - out.inputs.begin());
+        int const i = number(v);
         if (i == int(out.inputs.size())) out.inputs.push_back(v);
         add_to_key(std::uint32_t(i));
         return i;
@@ -86,6 +96,8 @@ void find_neighbourhood(Topology const& topology, std::uint32_t face, Neighbourh
                 f.vertices[s] = local(topology.vertex_of(g));
         }
     }
+    if (out.inputs.size() > 0xffff)
+        throw LimitError("inputs of a patch", out.inputs.size(), 0xffff);
 }
 
 } // namespace tessemu

@@ -10,6 +10,7 @@
 #include "pipeline/mesh/topology.h"
 
 #include <string>
+#include <unordered_map>
 
 namespace tessemu {
 
@@ -42,6 +43,8 @@ struct Neighbourhood {
     CornerNeighbourhood corner[4];
     std::vector<std::uint32_t> inputs; ///< global vertex of each local number
     std::string key;                   ///< equal for equal connectivity types
+    /// Local numbers of the inputs, where they are too many to search.
+    std::unordered_map<std::uint32_t, int> numbers;
 
     /// Ring start relative to the patch's face: ring edge 0 is edge `ring_shift[i]` of corner i's
     /// list.
@@ -50,6 +53,8 @@ struct Neighbourhood {
 
 /// The neighbourhood of a triangle or quad, rotated so that its corners' signatures are smallest.
 /// \param out  reused from call to call
+/// \cost  linear in the corners of the faces around
+/// Throws LimitError for more than 65,535 inputs.
 void find_neighbourhood(Topology const& topology, std::uint32_t face, Neighbourhood& out);
 
 } // namespace tessemu

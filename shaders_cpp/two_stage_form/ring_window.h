@@ -27,7 +27,7 @@ struct CornerWindow {
     static constexpr int kWords = kEdges + 4;
     /// What stands for an edge that is not there.
     static constexpr std::uint32_t kNone = 0xffffffffu;
-    /// Edges of a vertex: of each, d_j, c_j and m_j take one of a shader's 4096 temporary registers.
+    /// Edges of a vertex: of each, d_j, c_j and m_j take one of 4096 temporary registers.
     static constexpr int kMost = 1024;
 };
 

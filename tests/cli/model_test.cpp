@@ -1,4 +1,5 @@
-// The program and the files of its users: which are read, refused, warned about, cut, joined, moved.
+// The program and the files of its users: which are read, refused, warned about, cut, joined or
+// moved.
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/mesh/builtin_models.h"

@@ -128,16 +128,6 @@ std::vector<Case> cases()
     };
 }
 
-bool takes(Scheme const& scheme, ControlMesh const& mesh)
-{
-    try {
-        build_scheme(scheme, mesh);
-    } catch (MeshError const&) {
-        return false;
-    }
-    return true;
-}
-
 // v/|v| in float, with a product's 3 roundings, a sum's, a root's, a quotient's and a product's: 8
 // units of 2^-24 in each component, with a word to spare.
 constexpr double kUnit = 16 * 0x1p-24;
@@ -147,7 +137,7 @@ TEST(Poles, NormalsThereAreOfUnitLengthAndTheSameFromAllPatches)
     ThreadPool const threads;
     for (Case const& c : cases())
         for (auto const& scheme : schemes()) {
-            if (!takes(*scheme, c.mesh)) continue;
+            if (!test::takes(*scheme, c.mesh)) continue;
             SCOPED_TRACE(scheme->info().name + " on a " + c.name);
             SchemeOnMesh const m = build_scheme(*scheme, c.mesh);
             for (Machine const& machine : test::contraction_policies(2)) {

@@ -2,9 +2,11 @@
 // registers hold: a dispatch makes their control points, with the bits of the patches beside them.
 //
 // SPDX-License-Identifier: Apache-2.0
+#include "pipeline/forms/stencil_form.h"
 #include "pipeline/frame.h"
 #include "pipeline/mesh/animation.h"
 #include "pipeline/schemes/scheme.h"
+#include "tests/support/cages.h"
 #include "tests/support/edges.h"
 #include "tests/support/shapes.h"
 
@@ -15,24 +17,15 @@
 namespace tessemu {
 namespace {
 
-bool takes(Scheme const& scheme, ControlMesh const& mesh)
-{
-    try {
-        build_scheme(scheme, mesh);
-    } catch (MeshError const&) {
-        return false;
-    }
-    return true;
-}
-
 struct Cage {
     test::Shape shape;
     std::size_t wide_stencils, wide_rings; ///< patches
     int inputs, edges;                     ///< the most of a patch, and at a vertex
 };
 
-// A face of a trapezohedron has a pole of valence n, whose ring holds the whole equator, and vertices
-// of the equator, whose rings hold the other pole: 2n + 2 inputs. A face of a fan has all vertices.
+// A face of a trapezohedron has a pole of valence n, whose ring holds the whole equator, and
+// vertices of the equator, whose rings hold the other pole: 2n + 2 inputs. A face of a fan has all
+// vertices.
 std::vector<Cage> cages()
 {
     return {
@@ -55,7 +48,7 @@ TEST(WidePatches, SharedPointsHaveEqualBitsUnderEveryContraction)
     int drawn = 0;
     for (Cage const& cage : cages())
         for (auto const& scheme : schemes()) {
-            if (!takes(*scheme, cage.shape.mesh)) continue;
+            if (!test::takes(*scheme, cage.shape.mesh)) continue;
             SCOPED_TRACE(scheme->info().name + " on " + cage.shape.name + " of " +
                          std::to_string(cage.edges));
             SchemeOnMesh const m = build_scheme(*scheme, cage.shape.mesh);
@@ -167,7 +160,9 @@ TEST(WidePatches, AStageCountsWhatTheyCost)
         if (stage.stage == "compute_shader") {
             // 64 triangles of 15 points, 12 rows of edges and 6 of corners, in groups of 64.
             EXPECT_EQ(stage.invocations, 64u * 33);
-            EXPECT_GT(stage.flops.mul, 0u);
+            auto const& tables = dynamic_cast<StencilForm const&>(*m.patches).tables();
+            ASSERT_EQ(tables.wide.size(), 1u);
+            EXPECT_EQ(stage.flops.mul, 3 * tables.wide[0].weights.size());
         }
 }
 
@@ -192,12 +187,24 @@ TEST(WidePatches, ALimitThatStaysIsNamed)
     }
 }
 
+// Its stencils would have some 28 n^2 terms.
+TEST(WidePatches, APoleOfThreeThousandEdgesIsRefusedByName)
+{
+    try {
+        build_scheme(find_scheme("gregory-stencil"), test::uv_sphere(4000, 3).mesh);
+        FAIL();
+    } catch (LimitError const& e) {
+        EXPECT_NE(std::string(e.what()).find("terms of the stencils"), std::string::npos)
+            << e.what();
+        EXPECT_EQ(e.limit, 1u << 28);
+    }
+}
+
 TEST(WidePatches, StrictRefusesThem)
 {
     BuildOptions strict;
     strict.strict = true;
-    for (char const* scheme : {"gregory-stencil", "gregory-two-stage"})
-        try {
+    for (char const* scheme : {"gregory-stencil", "gregory-two-stage"}) try {
             build_scheme(find_scheme(scheme), test::uv_sphere(32, 5).mesh, strict);
             FAIL() << scheme;
         } catch (MeshError const& e) {

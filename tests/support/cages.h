@@ -15,15 +15,19 @@
 
 namespace tessemu::test {
 
-/// Whether a scheme takes a model; a built-in's name, or a path.
-inline bool takes(Scheme const& scheme, std::string const& model)
+inline bool takes(Scheme const& scheme, ControlMesh const& mesh)
 {
     try {
-        build_scheme(scheme, load_model(model).mesh);
+        build_scheme(scheme, mesh);
     } catch (MeshError const&) { // tests/pipeline/schemes_test.cpp holds the scheme to its word
         return false;
     }
     return true;
+}
+/// Whether a scheme takes a model; a built-in's name, or a path.
+inline bool takes(Scheme const& scheme, std::string const& model)
+{
+    return takes(scheme, load_model(model).mesh);
 }
 
 /// The built-in cages that a scheme takes, which are quads, triangles or both, open and closed. The
