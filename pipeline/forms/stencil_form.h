@@ -35,6 +35,10 @@ using RowBuffers = std::variant<StencilBuffers, GatheredBuffers>;
 
 class StencilForm : public PatchMesh {
 public:
+    /// Edges at a vertex that a scheme of this form takes: the rows of a pole's patches have some
+    /// 28 times the square of its valence terms.
+    static constexpr std::uint32_t kMostEdges = 2048;
+
     /// Patches of one kind and one number of inputs: an index buffer of their own, sorted by type.
     struct Group {
         std::size_t kind;
@@ -81,7 +85,7 @@ protected:
     {
     }
     /// Makes the tables: the last line of the scheme's constructor. Throws LimitError for wide
-    /// patches whose rows have more than 2^28 terms, as around one vertex of 3,000 edges.
+    /// patches whose rows have more than 2^28 terms, as around several vertices of 2,000 edges.
     /// \cost  a table for each connectivity type, linear in the faces, and in the terms of wide
     ///        patches' rows: some 28 times the square of a pole's valence
     void make_tables();

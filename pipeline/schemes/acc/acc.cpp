@@ -53,6 +53,7 @@ public:
             "acc", "LOOP09", "5, 6 (Loop and Schaefer 2008)",
             "ACC: bicubics with separate tangent patches, 25 control points; quads only"};
         info.takes.triangles = false;
+        info.takes.edges = StencilForm::kMostEdges;
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,

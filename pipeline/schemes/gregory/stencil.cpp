@@ -58,13 +58,15 @@ class GregoryStencil final : public Scheme {
 public:
     SchemeInfo info() const override
     {
-        return {
+        SchemeInfo info{
             "gregory-stencil",
             "LOOP09",
             "3, 4.3, 4.5, 4.6",
             "Gregory quads and triangles, regular quads as bicubics, stencils by connectivity type",
             {},
             gregory_parameters()};
+        info.takes.edges = StencilForm::kMostEdges;
+        return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
                                      Parameters const& parameters) const override
