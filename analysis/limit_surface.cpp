@@ -78,6 +78,7 @@ LimitSurface::LimitSurface(Topology const& topology, int level) : level_(level)
         position_[v] = p;
         normal_[v] = length > 0 ? n / length : Vec(0);
     }
+    set_pole_normals(find_poles(*at), x);
 
     // A quad's children are the quads of its corners, in order: the digits of a descendant's number
     // in base 4 say where it lies.
@@ -104,6 +105,24 @@ LimitSurface::LimitSurface(Topology const& topology, int level) : level_(level)
                 grid_[grid_start_[f] + std::size_t(c[k][1]) * n + std::size_t(c[k][0])] = quad[k];
         }
     }
+}
+
+// As the schemes have them: the mean of the faces around.
+void LimitSurface::set_pole_normals(Poles const& poles, std::vector<glm::dvec3> const& x)
+{
+    std::vector<Vec> normals;
+    for (std::size_t k = 0; k < poles.size(); ++k) {
+        Vec area(0);
+        for (std::uint32_t f = poles.first[k]; f < poles.first[k + 1]; ++f) {
+            auto const& v = poles.faces[f];
+            area += cross(x[v[2]] - x[v[0]], x[v[3]] - x[v[1]]);
+        }
+        double const length = glm::length(area);
+        normals.push_back(length > 0 ? area / length : Vec(0, 0, 1));
+    }
+    for (std::uint32_t v = 0; v < poles.of_vertex.size(); ++v)
+        if (std::uint32_t const pole = poles.at(v); pole != Poles::kNone)
+            normal_[v] = normals[pole];
 }
 
 } // namespace tessemu

@@ -8,7 +8,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pipeline/mesh/topology.h"
+#include "pipeline/mesh/poles.h"
 
 #include <glm/vec3.hpp>
 
@@ -24,7 +24,8 @@ public:
     int grid() const { return 1 << level_; } ///< segments along an edge of a base quad
 
     std::vector<glm::dvec3> const& positions() const { return position_; }
-    std::vector<glm::dvec3> const& normals() const { return normal_; } ///< unit; 0 where undefined
+    /// Of unit length; at a pole (pipeline/mesh/poles.h) the mean of the refined faces around.
+    std::vector<glm::dvec3> const& normals() const { return normal_; }
     ControlMesh const& quads() const { return mesh_; }
     /// The first quad of a base face; those of the next face follow its last.
     std::size_t first_quad(std::uint32_t face) const { return first_quad_[face]; }
@@ -40,6 +41,8 @@ public:
 
 private:
     static constexpr std::size_t kNone = std::size_t(-1);
+    void set_pole_normals(Poles const& poles, std::vector<glm::dvec3> const& x);
+
     int level_;
     ControlMesh mesh_; ///< the last refinement; its own positions are rounded
     std::vector<glm::dvec3> position_, normal_;

@@ -138,5 +138,31 @@ TEST(LimitSurface, ASquareStaysFlatAndKeepsItsCorners)
         }
 }
 
+// A row of vertices on one point: the tip of a cone of eight sides, whose mean normal is the axis.
+TEST(LimitSurface, HasANormalAtAPole)
+{
+    ControlMesh m;
+    for (int row = 0; row < 3; ++row)
+        for (int j = 0; j < 8; ++j) {
+            int const x[] = {2, 1, 0, -1, -2, -1, 0, 1}, y[] = {0, 1, 2, 1, 0, -1, -2, -1};
+            m.positions.emplace_back(float(row * x[j]), float(row * y[j]), float(-row));
+        }
+    for (std::uint32_t row = 0; row < 2; ++row)
+        for (std::uint32_t j = 0; j < 8; ++j) {
+            std::uint32_t const a = 8 * row + j, b = 8 * row + (j + 1) % 8;
+            m.add_face(std::vector{a, a + 8, b + 8, b});
+        }
+    Topology const topology(m);
+    LimitSurface const limit(topology, 3);
+    std::size_t tips = 0;
+    for (std::size_t v = 0; v < limit.positions().size(); ++v) {
+        EXPECT_NEAR(glm::length(limit.normals()[v]), 1, 1e-12);
+        if (glm::length(limit.positions()[v]) > 0) continue;
+        ++tips;
+        EXPECT_NEAR(limit.normals()[v].z, 1, 1e-12); // of doubles, each sum's parts below 1
+    }
+    EXPECT_EQ(tips, 8u * 8); // a segment of the tip's row has eight points at level 3
+}
+
 } // namespace
 } // namespace tessemu
