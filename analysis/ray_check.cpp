@@ -7,12 +7,13 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
-#include <tuple>
 
 namespace tessemu {
 
@@ -107,27 +108,26 @@ public:
     /// True if the ray meets a front first.
     bool meets_front(Ray const& r) const
     {
-        RTCRayHit const hit = trace(r.origin, r.direction, 0);
+        RTCRayHit const hit = trace(r.origin, r.direction);
         return hit.hit.geomID != RTC_INVALID_GEOMETRY_ID &&
                dot(glm::vec3(hit.hit.Ng_x, hit.hit.Ng_y, hit.hit.Ng_z), r.direction) < 0;
     }
 
-    /// The first triangle beyond `near`, and how far it is; -1 for none.
-    std::pair<std::int64_t, float> first_hit(glm::vec3 origin, glm::vec3 direction,
-                                             float near) const
+    /// The first triangle, and how far it is; -1 for none.
+    std::pair<std::int64_t, float> first_hit(glm::vec3 origin, glm::vec3 direction) const
     {
-        RTCRayHit const hit = trace(origin, direction, near);
+        RTCRayHit const hit = trace(origin, direction);
         if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {-1, INFINITY};
         return {std::int64_t(hit.hit.primID), hit.ray.tfar};
     }
 
 private:
-    RTCRayHit trace(glm::vec3 origin, glm::vec3 direction, float near) const
+    RTCRayHit trace(glm::vec3 origin, glm::vec3 direction) const
     {
         RTCRayHit hit{};
         hit.ray.org_x = origin.x, hit.ray.org_y = origin.y, hit.ray.org_z = origin.z;
         hit.ray.dir_x = direction.x, hit.ray.dir_y = direction.y, hit.ray.dir_z = direction.z;
-        hit.ray.tnear = near;
+        hit.ray.tnear = 0;
         hit.ray.tfar = INFINITY;
         hit.ray.mask = 0xffffffffu;
         hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
@@ -357,6 +357,23 @@ double clip_rounding(glm::vec3 axis, glm::vec3 eye, glm::dvec3 size)
     return 8 * 0x1p-24 * dot(abs(glm::dvec3(axis)), size + abs(glm::dvec3(eye)));
 }
 
+namespace {
+
+// How many times `d` it is from the eye to a triangle, whose border belongs to it; -1: past it.
+double distance_to(glm::dvec3 eye, glm::dvec3 d, glm::dvec3 a, glm::dvec3 b, glm::dvec3 c)
+{
+    glm::dvec3 const ab = b - a, ac = c - a, to = eye - a, n = cross(ab, ac), m = cross(to, d);
+    double const across = -dot(d, n); // twice the triangle's area, as the ray sees it
+    if (across == 0) return -1;
+    double const u = dot(ac, m) / across, v = -dot(ab, m) / across;
+    // Not exact: a hit beside the border by rounding counts, which only explains a pixel.
+    constexpr double kBorder = 0x1p-30;
+    if (u < -kBorder || v < -kBorder || u + v > 1 + kBorder) return -1;
+    return dot(to, n) / across;
+}
+
+} // namespace
+
 VisibilityCheck check_visibility(RayMesh const& mesh,
                                  std::vector<std::uint32_t> const& face_of_triangle,
                                  std::vector<std::int64_t> const& seen, Camera const& camera,
@@ -374,7 +391,8 @@ VisibilityCheck check_visibility(RayMesh const& mesh,
     float const around = 1.0f / 64 + float(sight.error_px),
                 as_far = 1.0001f + 2 * float(sight.depth_error);
     OwnFrame const frame(mesh.positions);
-    Scene const scene(frame.into(mesh.positions), mesh.triangles);
+    std::vector<glm::vec3> const positions = frame.into(mesh.positions);
+    Scene const scene(positions, mesh.triangles);
     glm::vec3 const eye = frame.into(camera.eye);
     float const aspect = float(width) / float(height);
     glm::vec3 const right = camera.right() * (aspect / camera.focal),
@@ -383,16 +401,29 @@ VisibilityCheck check_visibility(RayMesh const& mesh,
         return forward + (2 * x / float(width) - 1) * right + (1 - 2 * y / float(height)) * up;
     };
     auto const face_at = [&](glm::vec3 d) -> std::int64_t {
-        std::int64_t const t = scene.first_hit(eye, d, 0).first;
+        std::int64_t const t = scene.first_hit(eye, d).first;
         return t < 0 ? -1 : std::int64_t(face_of_triangle[std::size_t(t)]);
     };
-    // Is the raster's face as far away as the first hit?
+    // Triangles in the order of their faces.
+    std::vector<std::uint32_t> by_face(face_of_triangle.size());
+    std::iota(by_face.begin(), by_face.end(), 0u);
+    std::stable_sort(by_face.begin(), by_face.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return face_of_triangle[a] < face_of_triangle[b];
+    });
+    // Has the face a point there that is as far away as the first hit? Sheets may lie on each other,
+    // so all its triangles are asked.
     auto const is_as_far = [&](glm::vec3 d, std::int64_t face) {
-        auto [t, first] = scene.first_hit(eye, d, 0);
-        float at = first;
-        for (int k = 0; k < 8 && t >= 0 && at <= first * as_far; ++k) {
-            if (std::int64_t(face_of_triangle[std::size_t(t)]) == face) return true;
-            std::tie(t, at) = scene.first_hit(eye, d, at * (1 + 0x1p-22f));
+        float const first = scene.first_hit(eye, d).second;
+        if (!std::isfinite(first)) return false;
+        auto const less = [&](std::uint32_t t, std::int64_t f) {
+            return std::int64_t(face_of_triangle[t]) < f;
+        };
+        auto t = std::lower_bound(by_face.begin(), by_face.end(), face, less);
+        for (; t != by_face.end() && std::int64_t(face_of_triangle[*t]) == face; ++t) {
+            std::uint32_t const* const v = mesh.triangles.data() + 3 * std::size_t(*t);
+            double const at =
+                distance_to(eye, d, positions[v[0]], positions[v[1]], positions[v[2]]);
+            if (at >= 0 && at <= double(first) * double(as_far)) return true;
         }
         return false;
     };
@@ -407,15 +438,19 @@ VisibilityCheck check_visibility(RayMesh const& mesh,
             if (raster < 0 && ray < 0) continue;
             ++out.pixels;
             if (raster == ray) continue;
-            bool beside = false;
-            constexpr int kAround = 8; // steps to each side
-            for (int k = -kAround; k <= kAround && !beside; ++k)
-                for (int l = -kAround; l <= kAround && !beside; ++l)
-                    beside = face_at(direction(x + around * float(l) / kAround,
-                                               y + around * float(k) / kAround)) == raster;
-            if (beside)
+            auto const anywhere_around = [&](auto const& holds) {
+                constexpr int kAround = 8; // steps to each side
+                for (int k = -kAround; k <= kAround; ++k)
+                    for (int l = -kAround; l <= kAround; ++l)
+                        if (holds(direction(x + around * float(l) / kAround,
+                                            y + around * float(k) / kAround)))
+                            return true;
+                return false;
+            };
+            auto const as_far_as = [&](glm::vec3 d) { return is_as_far(d, raster); };
+            if (anywhere_around([&](glm::vec3 d) { return face_at(d) == raster; }))
                 ++(raster < 0 || ray < 0 ? out.silhouettes : out.edges);
-            else if (raster >= 0 && is_as_far(direction(x, y), raster))
+            else if (raster >= 0 && anywhere_around(as_far_as))
                 ++out.depths;
             else
                 out.unexplained.push_back({i, int(row)});

@@ -341,6 +341,7 @@ private:
             }
         }
         std::uint64_t const confirmed = v.failures;
+        if (past == v.checked) v.checked = 0; // all pass a surface that is a line: no word about it
         std::string pictures;
         // Instances number their triangles; through cracks that parity opened the picture shows
         // what lies behind.
@@ -372,7 +373,7 @@ private:
                    std::to_string(folds) + " meet a fold that is closed, " + std::to_string(past) +
                    " pass the outline by a rounding; " + std::to_string(control) +
                    " missed on a control with equal edges" + pictures;
-        return settled(std::move(v), "no ray was cast");
+        return settled(std::move(v), "no ray meets the surface");
     }
 
     /// The face that each pixel shows, -1 for none.

@@ -89,6 +89,7 @@ int run(CheckRequest const& o)
     RunOutput out(o.run.json);
     OutputFile* const picture = o.output.empty() ? nullptr : &out.add(o.output);
     if (picture) picture_format(*picture); // or refuses
+    keep_inputs(out, o.surface);
     Job job = prepare(o.surface, "check");
     set_picture(job, o.picture, o.surface);
     std::string const hint =

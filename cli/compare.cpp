@@ -22,6 +22,7 @@ struct CompareRequest {
 int run(CompareRequest const& o)
 {
     RunOutput out(o.run.json);
+    out.keep(o.model.model);
     Job job = prepare(o.model, o.shading, "compare");
     job.header.config.emplace_back("level", std::int64_t(o.level));
     ThreadPool const threads(o.run.threads);

@@ -33,6 +33,7 @@ int run(CostRequest o)
     if (picture) picture_format(*picture); // or refuses
     GpuModel const gpu = load_gpu_model(o.gpu);
     o.surface.vertex_cache = gpu.vertex_cache;
+    keep_inputs(out, o.surface);
     Job job = prepare(o.surface, "cost");
     set_picture(job, o.picture, o.surface);
     FrameSettings const& f = job.frame;

@@ -32,6 +32,7 @@ double parse_tolerance(std::string const& text, std::string const& option)
 int run(DiffRequest const& o)
 {
     RunOutput out(o.json);
+    for (std::string const& input : {o.a, o.b}) out.keep(input);
     std::string const a = read_file(o.a), b = read_file(o.b);
     std::vector<ResultValue> const values = diff_results(a, b, {o.a, o.b}, o.tolerance);
     auto const input = [](std::string const& path, std::string const& text) {

@@ -162,6 +162,7 @@ int run(DrawRequest const& o)
     std::vector<OutputFile*> const pictures = pictures_of(o, out);
     OutputFile* const picture = pictures.empty() ? nullptr : pictures[0];
     bool const cage = o.view.shows == ViewRequest::Shows::Cage;
+    keep_inputs(out, o.surface);
     Job job = prepare(o.surface, "draw", cage ? refine_for_scheme : build_scheme);
     set_picture(job, o.picture, o.surface);
     if (o.view.shows == ViewRequest::Shows::Error) return run_error_view(o, job, picture, out);

@@ -23,6 +23,7 @@ int run(ExportRequest const& o)
     RunOutput out(o.run.json);
     OutputFile& file = out.add(o.output);
     mesh_format(file); // or refuses
+    keep_inputs(out, o.surface);
     Job job = prepare(o.surface, "export");
     job.header.config.emplace_back("weld", o.weld);
     MeshWriter writer(file, o.weld, job.placement);

@@ -195,6 +195,12 @@ AdaptiveFactors factors_in_mesh(AdaptiveFactors factors, Placement const& placem
 
 } // namespace
 
+void keep_inputs(RunOutput const& out, SurfaceRequest const& o)
+{
+    out.keep(o.model.model);
+    out.keep(o.displace.heights.image);
+}
+
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb)
 {
     Job job = open(o, shading, verb, build_scheme);

@@ -71,6 +71,8 @@ SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make = build
 Config config_of(ModelRequest const& o, Parameters const& parameters);
 /// The model and its settings for shading.
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb);
+/// No result may replace the model or the height map.
+void keep_inputs(RunOutput const& out, SurfaceRequest const& o);
 /// With everything that verbs that tessellate share.
 Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make = build_scheme);
 /// Size, factors and camera, which shows the model, displaced, as it moves through all frames.

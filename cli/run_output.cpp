@@ -42,6 +42,17 @@ OutputFile& RunOutput::add(std::string const& path)
     return files_.emplace_back(std::move(file));
 }
 
+void RunOutput::keep(std::string const& input) const
+{
+    auto const refuse = [&](OutputFile const& file, std::string const& option) {
+        std::error_code no_such_file;
+        if (!file.is_stream() && std::filesystem::equivalent(file.path(), input, no_such_file))
+            throw WriteError(option + " is '" + file.path().string() + "', which the run reads");
+    };
+    if (json_) refuse(*json_, "--json");
+    for (OutputFile const& file : files_) refuse(file, "-o");
+}
+
 void RunOutput::close_files()
 {
     for (OutputFile& file : files_) file.close();

@@ -25,6 +25,9 @@ public:
 
     /// Of -o. Throws WriteError where another result goes to the same place.
     OutputFile& add(std::string const& path);
+    /// Throws WriteError where a result would replace this file, which the run reads. After all
+    /// add().
+    void keep(std::string const& input) const;
     /// Writes the JSON, prints the table where no result went to standard output, and puts the
     /// files in their places.
     /// \param json  makes it; hashes take their time

@@ -23,6 +23,7 @@ struct TessellateRequest {
 int run_batch(TessellateRequest const& o)
 {
     RunOutput result(o.output.empty() ? "-" : o.output);
+    result.keep(o.batch);
     std::string const text = o.batch == "-" ? read_file("/dev/stdin") : read_file(o.batch);
     std::string out;
     std::size_t line = 0, illegal = 0, first = 0;

@@ -297,6 +297,8 @@ SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions c
         more.push_back(other->what);
     }
     for (std::string const& w : out.patches->warnings()) more.push_back(w);
+    if (out.patches->patch_counts().empty())
+        more.push_back("no face is drawn: all are holes, or hidden at the boundary");
     warn_of_tags(info, out.mesh->base_topology(), more);
     warn(out, options, more);
     return out;

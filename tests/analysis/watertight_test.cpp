@@ -8,6 +8,7 @@
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/cages.h"
 #include "tests/support/files.h"
+#include "tests/support/shapes.h"
 #include "tests/support/stencil_patch.h"
 
 #include <glm/common.hpp>
@@ -632,6 +633,25 @@ INSTANTIATE_TEST_SUITE_P(Shared, OnModels,
                          testing::Values("bigguy", "monsterfrog", "spot_control", "two_hole",
                                          "suzanne"),
                          [](auto const& test) { return std::string(test.param); });
+
+// Two-sided cards: the picture may show either sheet.
+TEST(Watertight, SheetsThatLieOnEachOtherRaiseNoAlarm)
+{
+    ControlMesh flat = test::cube().mesh;
+    for (glm::vec3& p : flat.positions) p.z = 0;
+    ControlMesh thin = test::uv_sphere(12, 6).mesh;
+    for (glm::vec3& p : thin.positions) p.z *= 1e-5f;
+    for (ControlMesh const& mesh : {flat, thin}) {
+        SchemeOnMesh const m = build_scheme(find_scheme("gregory-stencil"), mesh);
+        WatertightSettings s;
+        s.frame.width = s.frame.height = 96;
+        s.frame.tess_factor = 5;
+        s.frame.camera = frame_points(mesh.positions, {0.5f, 0.4f, 1}, 1);
+        s.rays = 2000;
+        for (CheckedVerdict const& v : check_watertight(*m.patches, s, ThreadPool(2)))
+            EXPECT_NE(v.verdict, Verdict::Fail) << v.name << ": " << v.reason;
+    }
+}
 
 } // namespace
 } // namespace tessemu

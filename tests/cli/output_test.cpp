@@ -319,6 +319,31 @@ TEST_F(Output, ExtensionsAreOfAnyCase)
     EXPECT_EQ(j["config"]["color_format"], "R32G32B32A32_FLOAT");
 }
 
+TEST_F(Output, NoResultReplacesAnInput)
+{
+    std::string const square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
+                               "vt 0 1\nf 1/1 2/2 3/3 4/4\n";
+    std::ofstream(here / "in.obj") << square;
+    fs::create_symlink("in.obj", here / "link.obj");
+    ASSERT_EQ(shell("$T draw in.obj --size 16x16 -o h.png").status, 0);
+    std::string const heights = read("h.png");
+    std::ofstream(here / "batch.txt") << "quad integer triangle_cw 1 1 1 1 1 1\n";
+    std::string const batch = read("batch.txt");
+    for (char const* command :
+         {"export in.obj -o in.obj", "export in.obj -o link.obj", "export link.obj -o ./in.obj",
+          "draw in.obj --size 16x16 -o a.png --json in.obj", "info in.obj --json in.obj",
+          "compare in.obj --json in.obj", "check in.obj --json in.obj", "cost in.obj --json in.obj",
+          "draw in.obj --size 16x16 --displace h.png -o h.png",
+          "tessellate --batch batch.txt -o batch.txt"}) {
+        Result const r = shell("$T " + std::string(command));
+        EXPECT_EQ(r.status, 2) << command;
+        EXPECT_NE(r.err.find("which the run reads"), std::string::npos) << command << r.err;
+    }
+    EXPECT_EQ(read("in.obj"), square);
+    EXPECT_TRUE(read("h.png") == heights);
+    EXPECT_EQ(read("batch.txt"), batch);
+}
+
 TEST_F(Output, NamesAreBytes)
 {
     std::string const name = "caf\xe9 \\ \xc3\xa9\xff.obj", shown = "caf\\xE9 \\x5C \xc3\xa9\\xFF";

@@ -68,7 +68,8 @@ TEST(Manifold, LosesRepetitionsDegenerateFacesAndUnusedVertices)
         (std::vector<std::string>{
             "2 faces name a vertex twice in a row and lose the repetition; the first is face "
             "1",
-            "3 faces have fewer than three corners at different vertices: left out; the first "
+            "3 faces have fewer than three different vertices, or name one twice, not in a row: "
+            "left out; the first "
             "is face 2",
             "4 vertices are in no face: left out; the first is vertex 1"}));
     EXPECT_THROW(make_manifold(mesh_of(3, {{0, 1}, {2, 2, 2}})), MeshError);
