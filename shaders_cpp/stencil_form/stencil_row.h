@@ -16,6 +16,8 @@ template <class Mask, class Weight, class Position> struct StencilTerm {
     Weight weight;
     Position position;
 };
+template <class Mask, class Weight, class Position> // clang 14 deduces no aggregates
+StencilTerm(Mask, Weight, Position) -> StencilTerm<Mask, Weight, Position>;
 
 /// The sum over k = 0, ..., count - 1, in this order, of term(k), a StencilTerm.
 ///
