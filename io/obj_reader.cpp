@@ -14,6 +14,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 namespace tessemu {
 
@@ -108,13 +109,31 @@ private:
     bool continues_ = false;
 };
 
+// Where a decimal number, `e` its exponent's letter or its end, has the decimal point if that is
+// moved by the exponent: characters from its first one.
+std::int64_t point_of(std::string_view s, std::size_t e)
+{
+    constexpr std::int64_t kFar = std::int64_t(1) << 40; // beyond what text can make up for
+    std::int64_t exponent = 0;
+    if (e < s.size()) {
+        std::string_view digits = s.substr(e + 1);
+        if (digits.starts_with('+')) digits.remove_prefix(1);
+        auto const error =
+            std::from_chars(digits.data(), digits.data() + digits.size(), exponent).ec;
+        if (error == std::errc::result_out_of_range) exponent = digits[0] == '-' ? -kFar : kFar;
+    }
+    return std::int64_t(std::min(s.find('.'), e)) + std::clamp(exponent, -kFar, kFar);
+}
+
+std::size_t exponent_in(std::string_view s)
+{
+    return std::min(s.find_first_of("eE"), s.size());
+}
+
 // Of a number that is not representable: whether it is so small that it is 0.
 bool is_tiny(std::string_view s)
 {
-    constexpr std::size_t kLongest = 300; // digits that an exponent cannot hide
-    std::size_t const e = s.find_first_of("eE");
-    if (e != s.npos) return s.substr(e + 1).starts_with('-') && e < kLongest;
-    return s.find_first_of("123456789") > s.find('.');
+    return point_of(s, exponent_in(s)) < std::int64_t(s.find_first_of("123456789"));
 }
 
 enum class Reading { Number, TooLarge, NoNumber };
@@ -228,36 +247,46 @@ private:
     std::map<std::string, std::size_t> kinds_;
 };
 
-// How a file writes the coordinates of its vertices.
-struct WrittenDigits {
-    int place[3] = {INT_MAX, INT_MAX, INT_MAX}; ///< power of ten of the finest digit, by axis
-    int most = 0;                               ///< digits of a number, without leading zeros
-};
-
-WrittenDigits digits_of(std::string_view text)
-{
-    WrittenDigits out;
-    for (Statements s(text); s.next();) {
-        if (meaning_of(s.words[0]) != Meaning::Vertex) continue;
-        s.join();
-        for (std::size_t k = 0; k < 3; ++k) {
-            std::string_view const word = s.words[k + 1];
-            std::size_t const e = std::min(word.find_first_of("eE"), word.size());
-            int place = 0, digits = 0;
-            if (e < word.size()) is_number(word.substr(e + 1), place);
-            bool after_point = false;
-            for (char c : word.substr(0, e)) {
-                if (c == '.') after_point = true;
-                if (c < '0' || c > '9') continue;
-                if (after_point) --place;
-                if (digits || c != '0') ++digits;
-            }
-            out.place[k] = std::min(out.place[k], place);
-            out.most = std::max(out.most, digits);
-        }
+// How a file writes the coordinates of its vertices: whether in a format of so many significant
+// digits, such as %g, which has lost those behind. Whole numbers and a fixed number of decimals may
+// be all there is to say.
+class WrittenDigits {
+public:
+    /// \param number  a word that is one; the text outlives this
+    void see(std::string_view number)
+    {
+        std::size_t const e = exponent_in(number);
+        std::size_t digits = 0, last = 0;
+        for (std::size_t i = 0; i < e; ++i)
+            if (number[i] >= '0' && number[i] <= '9' && (digits || number[i] != '0'))
+                ++digits, last = i;
+        if (digits < std::max(most_, kLeast)) return;
+        if (digits > most_) full_.clear();
+        most_ = digits;
+        std::size_t const point = number.find('.');
+        auto const place = point_of(number, e) - std::int64_t(last) - (last < point);
+        std::set<std::string_view>& some = full_[place];
+        if (some.size() < kSeveral) some.insert(number);
     }
-    return out;
-}
+    /// How many there are at most, if that is the format's doing: several numbers have so many at
+    /// different powers of ten, or one has none at 1.
+    std::optional<int> limit() const
+    {
+        if (full_.empty() || most_ >= kAllOfADouble) return {};
+        auto const several = [](auto const& place) { return place.second.size() == kSeveral; };
+        auto const fine = std::find_if(full_.begin(), full_.end(), several);
+        auto const coarse = std::find_if(full_.rbegin(), full_.rend(), several);
+        bool const differ = fine != full_.end() && coarse->first - fine->first >= 2;
+        if (!differ && full_.rbegin()->first <= 0) return {};
+        return int(most_);
+    }
+
+private:
+    static constexpr std::size_t kLeast = 6, kAllOfADouble = 15, kSeveral = 3;
+    std::size_t most_ = 0; ///< digits of a number, without leading zeros
+    /// By the power of ten of the last digit, some different numbers with so many digits.
+    std::map<std::int64_t, std::set<std::string_view>> full_;
+};
 
 class ObjReader {
 public:
@@ -283,7 +312,7 @@ public:
         finish_tags();
         mesh().name = out_.lines.file = name_;
         place();
-        if (out_.placement.is_moved()) warn_of_digits(digits_of(text));
+        if (out_.placement.is_moved()) warn_of_digits();
         return std::move(out_);
     }
 
@@ -377,6 +406,7 @@ private:
             if (i >= 3) continue;
             if (reading == Reading::TooLarge || std::abs(out) > kMaxCoordinate)
                 refuse_size(words[i + 1], line);
+            digits_.see(words[i + 1]);
             float nearest = 0;
             if (is_between_floats(out) && is_number(words[i + 1], nearest) &&
                 std::isnormal(nearest))
@@ -704,9 +734,8 @@ private:
             p = clamp(p, -kFarthest, kFarthest);
     }
 
-    void warn_of_digits(WrittenDigits const& digits)
+    void warn_of_digits()
     {
-        constexpr int kAllOfADouble = 15;
         constexpr double kBad = 1e-3;
         double rounding = 0;
         glm::dvec3 const shift = out_.placement.to_file(glm::dvec3(0));
@@ -718,9 +747,15 @@ private:
             int exponent = 0;
             std::frexp(most, &exponent);
             double half = std::ldexp(1.0, exponent - 54);
-            if (double written = 0; digits.most < kAllOfADouble &&
-                                    is_number(fmt::format("5e{}", digits.place[k] - 1), written))
-                half = std::max(half, written);
+            if (auto const digits = digits_.limit()) {
+                // d.dde+06: half of the last of so many digits
+                std::string const most_in_words = fmt::format("{:.{}e}", most, *digits - 1);
+                int power = 0;
+                double written = 0;
+                if (is_number(most_in_words.substr(most_in_words.find('e') + 1), power) &&
+                    is_number(fmt::format("5e{}", power - *digits), written))
+                    half = std::max(half, written);
+            }
             rounding = std::max(rounding, half);
         }
         double shortest = INFINITY;
@@ -736,7 +771,7 @@ private:
         if (!(rounding > kBad * shortest)) return;
         notes_.add(out_.lines.vertices[a],
                    fmt::format("so far from the origin the file's coordinates are good to {:g}, "
-                               "{:.2g} % of the edge between vertices {} and {}: more digits, or "
+                               "{:.3g} % of the edge between vertices {} and {}: more digits, or "
                                "a mesh nearer to the origin, would keep its shape",
                                rounding, 100 * rounding / shortest, a + 1, b + 1));
     }
@@ -757,6 +792,7 @@ private:
     ObjFile out_;
     std::vector<glm::dvec3> positions_;
     std::vector<InBetween> in_between_;
+    WrittenDigits digits_;
     std::vector<glm::vec2> coordinates_;
     std::size_t normals_ = 0;
     ForwardIndices vertex_indices_, coordinate_indices_, normal_indices_;
