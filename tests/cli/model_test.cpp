@@ -397,6 +397,21 @@ TEST(Program, CheckSaysThatNothingWasCheckedAndJoinsVertices)
     EXPECT_EQ(info["boundary_edges"], 0);
 }
 
+// Joined, and cut along an edge of three faces: done and told once.
+TEST(Program, InfoJoinsAndCutsAsCheckDoes)
+{
+    fs::path const path = scratch() / "cube_with_a_fin.obj";
+    std::ofstream(path) << "v 5 5 5\n" + cube_of_24_vertices() + "v 0 0 9\nf -25 -24 -1\n";
+    std::string const rest = path.string() + " --join 0 --json - ";
+    Result const info = run("info " + rest), check = run("check --size 32x32 --rays 0 " + rest);
+    Json const i = Json::parse(info.out), c = Json::parse(check.out);
+    EXPECT_EQ(i["warnings"], c["warnings"]) << i["warnings"] << c["warnings"];
+    EXPECT_GE(i["warnings"].size(), 3u) << i["warnings"];
+    EXPECT_EQ(i["mesh"]["faces"], 7);
+    EXPECT_EQ(i["mesh"]["unused_vertices"], 1);
+    EXPECT_EQ(info.err, check.err.substr(0, info.err.size()));
+}
+
 TEST(Program, BreakFaceCountsTheFilesFaces)
 {
     fs::path const cube = scratch() / "with_a_line.obj";
