@@ -61,7 +61,7 @@ Meaning meaning_of(std::string_view keyword)
 // The text, statement by statement.
 class Statements {
 public:
-    explicit Statements(std::string_view text) : rest_(text) {}
+    Statements(std::string_view text, std::string const& name) : rest_(text), name_(name) {}
 
     /// To the next line that says something; false at the end. One that continues is whole only
     /// after join().
@@ -69,7 +69,7 @@ public:
     {
         words.clear();
         while (words.empty() && !rest_.empty()) {
-            line = next_line_;
+            line = int(next_line_);
             continues_ = take_line();
         }
         return !words.empty();
@@ -87,6 +87,8 @@ private:
     // Adds a line's words; says whether a backslash ends it.
     bool take_line()
     {
+        if (next_line_ > INT_MAX)
+            throw FormatError(name_, 0, fmt::format("has more lines than {}, the limit", INT_MAX));
         std::size_t const end = std::min(rest_.find_first_of("\r\n"), rest_.size());
         std::string_view s = rest_.substr(0, end);
         bool const two = rest_.substr(end).starts_with("\r\n");
@@ -105,7 +107,8 @@ private:
     }
 
     std::string_view rest_;
-    int next_line_ = 1;
+    std::string const& name_;
+    std::int64_t next_line_ = 1;
     bool continues_ = false;
 };
 
@@ -296,7 +299,7 @@ public:
     {
         check_encoding(text);
         if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-        for (Statements s(text); s.next();) statement(s);
+        for (Statements s(text, name_); s.next();) statement(s);
         if (out_.lines.faces.empty())
             throw FormatError(name_, 0,
                               text.empty()
@@ -329,7 +332,9 @@ private:
         if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
             throw FormatError(name_, 0, "is UTF-16 text; save it as UTF-8");
         if (std::size_t const at = text.find('\0'); at != text.npos)
-            fail(1 + int(std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n')),
+            fail(int(std::min<std::ptrdiff_t>(
+                     INT_MAX,
+                     1 + std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n'))),
                  fmt::format("byte {} is zero: this is no text, or UTF-16; an OBJ file is ASCII or "
                              "UTF-8",
                              at));
@@ -560,24 +565,31 @@ private:
             mesh().coordinates = std::move(coordinates_);
     }
 
+    // \param kind  of tags; like ones are counted
+    void note_tag(int line, std::string const& kind, std::string const& text)
+    {
+        notes_.count("tag: " + kind, line, [&] { return text; });
+    }
+
     void tag(std::vector<std::string_view> const& words, int line)
     {
-        auto const skip = [&](std::string const& why) {
-            notes_.add(line, why + ": the tag is skipped");
+        auto const skip = [&](char const* kind, std::string const& why) {
+            note_tag(line, kind, why + ": the tag is skipped");
         };
         std::size_t counts[3] = {};
         std::string_view form = words.size() > 2 ? words[2] : "";
         for (int i = 0; i < 3; ++i) {
             std::size_t const slash = form.find('/');
             if (!is_number(form.substr(0, slash), counts[i]) || (i < 2) != (slash != form.npos))
-                return skip("tag is not 'name ints/floats/strings'");
+                return skip("form", "tag is not 'name ints/floats/strings'");
             form = slash == form.npos ? "" : form.substr(slash + 1);
         }
         std::string const what = fmt::format("tag '{}'", shown(words[1]));
         std::size_t const has = words.size() - 3;
         for (std::size_t expected = 0; std::size_t c : counts)
             if (c > has || (expected += c) > has)
-                return skip(fmt::format("{} announces {} values and has {}", what, words[2], has));
+                return skip("lacks",
+                            fmt::format("{} announces {} values and has {}", what, words[2], has));
         Tag t{line, std::string(words[1]), {}, {}, {}};
         auto word = words.begin() + 3;
         for (std::size_t i = 0; i < counts[0] + counts[1]; ++i, ++word) {
@@ -586,7 +598,7 @@ private:
             bool const integer = i < counts[0], endless = *word == "inf" || *word == "infinite";
             if (endless) x = kInfinitelySharp;
             if (integer ? !is_number(*word, k) : !endless && !is_number(*word, x))
-                return skip(fmt::format("{} has the value '{}'", what, shown(*word)));
+                return skip("value", fmt::format("{} has the value '{}'", what, shown(*word)));
             if (integer)
                 t.ints.push_back(k);
             else
@@ -594,16 +606,18 @@ private:
         }
         t.strings.assign(word, word + std::ptrdiff_t(counts[2]));
         if (word + std::ptrdiff_t(counts[2]) != words.end())
-            notes_.add(line, fmt::format("{} announces {} values and has {}: the rest is left out",
-                                         what, words[2], has));
+            note_tag(line, "rest",
+                     fmt::format("{} announces {} values and has {}: the rest is left out", what,
+                                 words[2], has));
         tags_.push_back(std::move(t));
     }
 
     bool in_range(Tag const& t, std::int64_t value, std::size_t limit, char const* what)
     {
         if (value >= 0 && value < std::int64_t(limit)) return true;
-        notes_.add(t.line, fmt::format("tag '{}' names {} {}, the file has 0 to {}: skipped",
-                                       t.name, what, value, std::int64_t(limit) - 1));
+        note_tag(t.line, t.name + " names " + what,
+                 fmt::format("tag '{}' names {} {}, the file has 0 to {}: skipped", t.name, what,
+                             value, std::int64_t(limit) - 1));
         return false;
     }
 
@@ -619,24 +633,27 @@ private:
     {
         std::size_t const n = t.floats.size(), items = t.ints.size() / ints;
         if (n == 0)
-            notes_.add(t.line,
-                       fmt::format("tag '{}' has no sharpness: it is infinitely sharp", t.name));
+            note_tag(t.line, t.name + " has none",
+                     fmt::format("tag '{}' has no sharpness: it is infinitely sharp", t.name));
         for (float s : t.floats)
             if (s < 0) {
-                notes_.add(t.line,
-                           fmt::format("tag '{}' has the sharpness {}: taken as 0", t.name, s));
+                note_tag(t.line, t.name + " below 0",
+                         fmt::format("tag '{}' has the sharpness {}: taken as 0", t.name, s));
                 break;
             }
         if (n <= 1 || n == items || n > (items - 1) * ints) return true;
-        notes_.add(t.line, fmt::format("tag '{}' has {} sharpnesses for {} {}: the tag is skipped",
-                                       t.name, n, items, ints == 2 ? "edges" : "vertices"));
+        note_tag(t.line, t.name + " number",
+                 fmt::format("tag '{}' has {} sharpnesses for {} {}: the tag is skipped", t.name, n,
+                             items, ints == 2 ? "edges" : "vertices"));
         return false;
     }
 
     void apply(Tag const& t)
     {
         std::size_t const vertices = positions_.size(), faces = mesh().faces();
-        auto const left_out = [&](std::string const& what) { notes_.add(t.line, what); };
+        auto const left_out = [&](std::string const& what, char const* kind = nullptr) {
+            note_tag(t.line, kind ? kind : what, what);
+        };
         if (t.name == "crease") {
             std::size_t const edges = t.ints.size() / 2;
             if (t.ints.size() % 2)
@@ -649,7 +666,8 @@ private:
                     continue;
                 if (!is_edge(std::uint32_t(a), std::uint32_t(b)))
                     left_out(
-                        fmt::format("crease {}-{} runs along no edge of the mesh: skipped", a, b));
+                        fmt::format("crease {}-{} runs along no edge of the mesh: skipped", a, b),
+                        "crease along no edge");
                 else
                     creases_[edge_of(std::uint32_t(a), std::uint32_t(b))] = {
                         std::uint32_t(a), std::uint32_t(b), sharpness(t, i, 2)};
@@ -678,7 +696,7 @@ private:
                                      "faces, as by rule {}",
                                      t.name, kLinear));
         } else {
-            left_out(fmt::format("tag '{}' is not known and is skipped", shown(t.name)));
+            left_out(fmt::format("tag '{}' is not known and is skipped", shown(t.name)), "unknown");
         }
     }
 

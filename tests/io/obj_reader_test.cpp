@@ -102,6 +102,37 @@ TEST(ObjReader, WarnsAboutTagsThatItSkips)
     }
 }
 
+TEST(ObjReader, CountsLikeWarningsOfTags)
+{
+    for (auto const& [tag, other] : std::vector<std::pair<std::string, std::string>>{
+             {"t corner 1/1/0 99 2\n", "t corner 1/1/0 98 2\n"},
+             {"t crease 2/1/0 0 6 2\n", "t crease 2/1/0 1 7 2\n"},
+             {"t crease 2/1/0 0 1 x\n", "t corner 1/1/0 0 y\n"},
+             {"t one 0/0/0\n", "t two 0/0/0\n"},
+             {"t\n", "t crease\n"},
+             {"t corner 1/1/0 1 -1\n", "t corner 1/1/0 2 -2\n"},
+             {"t hole 0/0/0\n", "t hole 0/0/0\n"}}) {
+        std::string text = kCube + tag;
+        for (int i = 0; i < 199; ++i) text += other;
+        auto const warnings = read_obj(text, "a").warnings;
+        ASSERT_EQ(warnings.size(), 1u) << tag;
+        EXPECT_TRUE(warnings[0].starts_with("a:15: ")) << warnings[0];
+        EXPECT_TRUE(warnings[0].ends_with(" (and 199 more)")) << warnings[0];
+    }
+}
+
+// Digits that an exponent does not make up for are no zero.
+TEST(ObjReader, ANumberOfManyDigitsIsNotZero)
+{
+    std::string const huge = std::string(61, '9') + "e-1";
+    ObjFile const f = read_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nvt " + huge +
+                                   " 0\nf 1/1 2/1 3/1\nt crease 2/1/0 0 1 " + huge + "\n",
+                               "a");
+    EXPECT_EQ(f.warnings.size(), 2u);
+    EXPECT_TRUE(f.mesh.coordinates.empty());
+    EXPECT_TRUE(f.mesh.creases.empty());
+}
+
 RC_GTEST_PROP(ObjReader, AnyTextEitherReadsOrThrowsAFormatError, ())
 {
     auto const lines = *rc::gen::container<std::vector<std::string>>(rc::gen::oneOf(
