@@ -669,7 +669,7 @@ private:
                         fmt::format("crease {}-{} runs along no edge of the mesh: skipped", a, b),
                         "crease along no edge");
                 else
-                    creases_[edge_of(std::uint32_t(a), std::uint32_t(b))] = {
+                    creases_[ordered_edge(std::uint32_t(a), std::uint32_t(b))] = {
                         std::uint32_t(a), std::uint32_t(b), sharpness(t, i, 2)};
             }
         } else if (t.name == "corner") {
@@ -701,21 +701,17 @@ private:
     }
 
     using Edge = std::pair<std::uint32_t, std::uint32_t>;
-    static Edge edge_of(std::uint32_t a, std::uint32_t b)
-    {
-        return {std::min(a, b), std::max(a, b)};
-    }
     bool is_edge(std::uint32_t a, std::uint32_t b)
     {
         if (edges_.empty()) {
             for (std::size_t f = 0; f < mesh().faces(); ++f) {
                 auto const v = mesh().face(f);
                 for (std::size_t i = 0; i < v.size(); ++i)
-                    edges_.push_back(edge_of(v[i], v[(i + 1) % v.size()]));
+                    edges_.push_back(ordered_edge(v[i], v[(i + 1) % v.size()]));
             }
             std::sort(edges_.begin(), edges_.end());
         }
-        return std::binary_search(edges_.begin(), edges_.end(), edge_of(a, b));
+        return std::binary_search(edges_.begin(), edges_.end(), ordered_edge(a, b));
     }
 
     // What is not sharp has no tag.
@@ -802,7 +798,6 @@ private:
 
     static constexpr float kFarthest = 1e9f;
     static constexpr std::uint32_t kNone = 0xffffffffu;
-    static constexpr float kInfinitelySharp = 10;
     static constexpr std::int64_t kLinear = 5;
 
     std::string const& name_;
