@@ -84,7 +84,7 @@ std::vector<OutputFile*> pictures_of(DrawRequest const& o, RunOutput& out)
     std::vector<OutputFile*> files;
     std::size_t const frames = std::size_t(o.surface.animate.frames);
     if (o.output.empty()) return files;
-    if (frames > 1 && OutputFile(o.output).is_stream())
+    if (frames > 1 && OutputFile::names_stream(o.output))
         throw Error(
             fmt::format("-o is {}, which takes one picture; --frames makes {}", o.output, frames));
     for (std::size_t i = 0; i < frames; ++i) {

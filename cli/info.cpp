@@ -3,10 +3,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/job.h"
 #include "cli/verbs.h"
-#include "pipeline/mesh/join.h"
-#include "pipeline/mesh/manifold.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 
 namespace tessemu {
 
@@ -17,10 +17,20 @@ struct InfoRequest {
     std::string json;
 };
 
+// Of a file's mesh: those of no face that is drawn.
+std::size_t unused_vertices(ControlMesh const& file, ControlMesh const& drawn)
+{
+    std::vector<char> used(file.positions.size());
+    for (std::uint32_t f = 0; f < drawn.faces(); ++f)
+        for (std::uint32_t v : file.face(drawn.file_face(f))) used[v] = 1;
+    return std::size_t(std::count(used.begin(), used.end(), 0));
+}
+
 int run(InfoRequest const& o)
 {
     RunOutput out(o.json);
-    Model model = open_model(o.model.model);
+    out.keep(o.model.model);
+    Model const model = open_model(o.model.model);
     SchemeInfo const info = o.model.scheme->info();
     ReportHeader header{"info",
                         config_of(o.model, resolve_parameters(info, o.model.build.set)),
@@ -28,41 +38,28 @@ int run(InfoRequest const& o)
                         model.warnings,
                         {}};
     std::vector<std::string> more;
-    MeshSummary summary;
-    try {
-        MeshRepairs repairs;
-        if (auto const& distance = o.model.build.join) {
-            JoinedMesh joined = join_vertices(std::move(model.mesh), *distance, model.placement);
-            model.mesh = std::move(joined.mesh);
-            more = in_words(joined.join, *distance);
-        }
-        if (!o.model.build.strict) {
-            ManifoldMesh manifold = make_manifold(std::move(model.mesh));
-            model.mesh = std::move(manifold.mesh);
-            repairs = manifold.repairs;
-            std::vector<std::string> const repaired = in_words(repairs, model.lines);
-            more.insert(more.end(), repaired.begin(), repaired.end());
-            for (std::string const& w : more) print_warning(w);
-        }
-        summary = summarize(Topology(model.mesh));
-        summary.vertices += repairs.unused.number;
-        summary.unused_vertices += repairs.unused.number;
-    } catch (MeshError const& e) {
-        throw FormatError(model.lines.file, model.lines.line_of_face(e.face), e.what());
-    }
-    // A mesh that the scheme refuses still has figures: the refusal becomes a warning.
+    auto const tell = [&](std::string const& warning) {
+        more.push_back(warning);
+        print_warning(warning);
+    };
+    SchemeOnMesh surface;
     std::vector<PatchCount> patches;
-    std::string const path = model.lines.file;
     try {
-        SchemeOnMesh const surface = build(std::move(model), o.model);
+        surface = build(model, o.model, build_scheme, tell);
         patches = surface.patches->patch_counts();
-        more.insert(more.end(), surface.warnings.begin(), surface.warnings.end());
     } catch (FormatError const& e) {
-        more.push_back(info.name + " cannot draw this mesh: " + e.what());
-        print_warning(more.back());
+        // A mesh that the scheme refuses still has figures: the refusal becomes a warning.
+        ModelRequest as_it_is = o.model;
+        as_it_is.build.subdivide = 0;
+        surface = build(model, as_it_is, refine_for_scheme, {});
+        tell(info.name + " cannot draw this mesh: " + e.what());
     }
+    MeshSummary summary = summarize(surface.mesh->base_topology());
+    std::size_t const unused = unused_vertices(model.mesh, surface.mesh->base());
+    summary.vertices += unused - summary.unused_vertices;
+    summary.unused_vertices = unused;
     header.warnings.insert(header.warnings.end(), more.begin(), more.end());
-    header.warnings = without_folder(std::move(header.warnings), path);
+    header.warnings = without_folder(std::move(header.warnings), model.lines.file);
     out.finish([&] { return info_report(header, summary, patches); }, info_table(summary, patches));
     return 0;
 }

@@ -51,12 +51,12 @@ std::vector<std::string> without_folder(std::vector<std::string> warnings, std::
     return warnings;
 }
 
-SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make)
+SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make, WarningSink const& warn)
 {
     BuildOptions options = o.build;
     options.placement = model.placement;
     options.lines = std::move(model.lines);
-    options.warn = print_warning;
+    options.warn = warn;
     try {
         return make(*o.scheme, std::move(model.mesh), options);
     } catch (MeshError const& e) {

@@ -65,8 +65,10 @@ struct Job {
 
 /// build_scheme, or refine_for_scheme for who needs no patches.
 using MakeSurface = SchemeOnMesh(Scheme const&, ControlMesh, BuildOptions const&);
-/// Prints warnings. Errors about the mesh name the file, and the line where it is known.
-SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make = build_scheme);
+/// Prints warnings, or tells them to another. Errors about the mesh name the file, and the line
+/// where it is known.
+SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make = build_scheme,
+                   WarningSink const& warn = print_warning);
 /// "scheme", "subdivide", "join" where it is asked for, and each parameter by its name.
 Config config_of(ModelRequest const& o, Parameters const& parameters);
 /// The model and its settings for shading.

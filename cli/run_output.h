@@ -17,7 +17,7 @@ void print(std::string_view text);
 void print_message(std::string_view text);
 
 /// The results of a run. Made before the work, so that what can fail fails before it; files get
-/// their places at the end, all or none.
+/// their places at the end, one after the other, each whole or as it was.
 class RunOutput {
 public:
     /// \param json  a path, "-", or empty: no JSON

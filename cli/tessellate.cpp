@@ -24,10 +24,10 @@ int run_batch(TessellateRequest const& o)
 {
     RunOutput result(o.output.empty() ? "-" : o.output);
     result.keep(o.batch);
-    std::string const text = o.batch == "-" ? read_file("/dev/stdin") : read_file(o.batch);
+    std::string const name = input_name(o.batch);
     std::string out;
     std::size_t line = 0, illegal = 0, first = 0;
-    for (TessellatorCase const& c : parse_tessellator_cases(text, o.batch)) {
+    for (TessellatorCase const& c : parse_tessellator_cases(read_file(o.batch), name)) {
         ++line;
         if (!is_legal_output(c.state) && illegal++ == 0) first = line;
         out += tessellator_answer(run_tessellator_case(c)) + "\n";
@@ -36,7 +36,7 @@ int run_batch(TessellateRequest const& o)
         print_warning(fmt::format(
             "{}:{}: Direct3D 11 has no such output in this domain (rule R75){}: answered as the "
             "reference tessellator does",
-            o.batch, first, illegal > 1 ? fmt::format(", and in {} cases more", illegal - 1) : ""));
+            name, first, illegal > 1 ? fmt::format(", and in {} cases more", illegal - 1) : ""));
     result.finish([&] { return out; }, "");
     return 0;
 }

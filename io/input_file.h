@@ -10,7 +10,11 @@
 
 namespace tessemu {
 
-/// Reads a whole file. Throws FormatError that names it; refuses more than `limit` bytes.
+/// A path as messages have it: "-" is "standard input".
+std::string input_name(std::filesystem::path const& path);
+
+/// Reads a whole file, or standard input, "-". Throws FormatError that names it, also where reading
+/// fails halfway; refuses more than `limit` bytes.
 std::string read_file(std::filesystem::path const& path, std::uint64_t limit = std::uint64_t(4)
                                                                                << 30);
 

@@ -6,37 +6,13 @@
 #include "io/sha256.h"
 #include "pipeline/mesh/builtin_models.h"
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-
 namespace tessemu {
-
-namespace {
-
-std::string const kStandardInput = "standard input";
-
-std::string read_standard_input()
-{
-    std::string text;
-    char block[1 << 16];
-    while (std::size_t const n = std::fread(block, 1, sizeof block, stdin)) text.append(block, n);
-    if (std::ferror(stdin))
-        throw FormatError(kStandardInput, 0,
-                          std::string("cannot be read: ") + std::strerror(errno));
-    return text;
-}
-
-} // namespace
 
 Model load_model(std::string const& path_or_name, WarningSink const& sink)
 {
     std::string text;
-    bool const standard_input = path_or_name == "-";
-    bool found = standard_input || std::filesystem::exists(path_or_name);
-    if (standard_input) {
-        text = read_standard_input();
-    } else if (found) {
+    bool found = path_or_name == "-" || std::filesystem::exists(path_or_name);
+    if (found) {
         text = read_file(path_or_name);
     } else {
         std::string known;
@@ -49,7 +25,7 @@ Model load_model(std::string const& path_or_name, WarningSink const& sink)
                               "no such file, and no built-in cage (" + known + ")");
     }
     Model out;
-    ObjFile obj = read_obj(text, standard_input ? kStandardInput : path_or_name, sink);
+    ObjFile obj = read_obj(text, input_name(path_or_name), sink);
     out.name = std::filesystem::path(path_or_name).filename().string();
     out.mesh = std::move(obj.mesh);
     out.placement = obj.placement;

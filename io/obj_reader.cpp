@@ -14,6 +14,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 namespace tessemu {
 
@@ -60,7 +61,7 @@ Meaning meaning_of(std::string_view keyword)
 // The text, statement by statement.
 class Statements {
 public:
-    explicit Statements(std::string_view text) : rest_(text) {}
+    Statements(std::string_view text, std::string const& name) : rest_(text), name_(name) {}
 
     /// To the next line that says something; false at the end. One that continues is whole only
     /// after join().
@@ -68,7 +69,7 @@ public:
     {
         words.clear();
         while (words.empty() && !rest_.empty()) {
-            line = next_line_;
+            line = int(next_line_);
             continues_ = take_line();
         }
         return !words.empty();
@@ -86,6 +87,8 @@ private:
     // Adds a line's words; says whether a backslash ends it.
     bool take_line()
     {
+        if (next_line_ > INT_MAX)
+            throw FormatError(name_, 0, fmt::format("has more lines than {}, the limit", INT_MAX));
         std::size_t const end = std::min(rest_.find_first_of("\r\n"), rest_.size());
         std::string_view s = rest_.substr(0, end);
         bool const two = rest_.substr(end).starts_with("\r\n");
@@ -104,17 +107,36 @@ private:
     }
 
     std::string_view rest_;
-    int next_line_ = 1;
+    std::string const& name_;
+    std::int64_t next_line_ = 1;
     bool continues_ = false;
 };
+
+// Where a decimal number, `e` its exponent's letter or its end, has the decimal point if that is
+// moved by the exponent: characters from its first one.
+std::int64_t point_of(std::string_view s, std::size_t e)
+{
+    constexpr std::int64_t kFar = std::int64_t(1) << 40; // beyond what text can make up for
+    std::int64_t exponent = 0;
+    if (e < s.size()) {
+        std::string_view digits = s.substr(e + 1);
+        if (digits.starts_with('+')) digits.remove_prefix(1);
+        auto const error =
+            std::from_chars(digits.data(), digits.data() + digits.size(), exponent).ec;
+        if (error == std::errc::result_out_of_range) exponent = digits[0] == '-' ? -kFar : kFar;
+    }
+    return std::int64_t(std::min(s.find('.'), e)) + std::clamp(exponent, -kFar, kFar);
+}
+
+std::size_t exponent_in(std::string_view s)
+{
+    return std::min(s.find_first_of("eE"), s.size());
+}
 
 // Of a number that is not representable: whether it is so small that it is 0.
 bool is_tiny(std::string_view s)
 {
-    constexpr std::size_t kLongest = 300; // digits that an exponent cannot hide
-    std::size_t const e = s.find_first_of("eE");
-    if (e != s.npos) return s.substr(e + 1).starts_with('-') && e < kLongest;
-    return s.find_first_of("123456789") > s.find('.');
+    return point_of(s, exponent_in(s)) < std::int64_t(s.find_first_of("123456789"));
 }
 
 enum class Reading { Number, TooLarge, NoNumber };
@@ -228,36 +250,46 @@ private:
     std::map<std::string, std::size_t> kinds_;
 };
 
-// How a file writes the coordinates of its vertices.
-struct WrittenDigits {
-    int place[3] = {INT_MAX, INT_MAX, INT_MAX}; ///< power of ten of the finest digit, by axis
-    int most = 0;                               ///< digits of a number, without leading zeros
-};
-
-WrittenDigits digits_of(std::string_view text)
-{
-    WrittenDigits out;
-    for (Statements s(text); s.next();) {
-        if (meaning_of(s.words[0]) != Meaning::Vertex) continue;
-        s.join();
-        for (std::size_t k = 0; k < 3; ++k) {
-            std::string_view const word = s.words[k + 1];
-            std::size_t const e = std::min(word.find_first_of("eE"), word.size());
-            int place = 0, digits = 0;
-            if (e < word.size()) is_number(word.substr(e + 1), place);
-            bool after_point = false;
-            for (char c : word.substr(0, e)) {
-                if (c == '.') after_point = true;
-                if (c < '0' || c > '9') continue;
-                if (after_point) --place;
-                if (digits || c != '0') ++digits;
-            }
-            out.place[k] = std::min(out.place[k], place);
-            out.most = std::max(out.most, digits);
-        }
+// How a file writes the coordinates of its vertices: whether in a format of so many significant
+// digits, such as %g, which has lost those behind. Whole numbers and a fixed number of decimals may
+// be all there is to say.
+class WrittenDigits {
+public:
+    /// \param number  a word that is one; the text outlives this
+    void see(std::string_view number)
+    {
+        std::size_t const e = exponent_in(number);
+        std::size_t digits = 0, last = 0;
+        for (std::size_t i = 0; i < e; ++i)
+            if (number[i] >= '0' && number[i] <= '9' && (digits || number[i] != '0'))
+                ++digits, last = i;
+        if (digits < std::max(most_, kLeast)) return;
+        if (digits > most_) full_.clear();
+        most_ = digits;
+        std::size_t const point = number.find('.');
+        auto const place = point_of(number, e) - std::int64_t(last) - (last < point);
+        std::set<std::string_view>& some = full_[place];
+        if (some.size() < kSeveral) some.insert(number);
     }
-    return out;
-}
+    /// How many there are at most, if that is the format's doing: several numbers have so many at
+    /// different powers of ten, or one has none at 1.
+    std::optional<int> limit() const
+    {
+        if (full_.empty() || most_ >= kAllOfADouble) return {};
+        auto const several = [](auto const& place) { return place.second.size() == kSeveral; };
+        auto const fine = std::find_if(full_.begin(), full_.end(), several);
+        auto const coarse = std::find_if(full_.rbegin(), full_.rend(), several);
+        bool const differ = fine != full_.end() && coarse->first - fine->first >= 2;
+        if (!differ && full_.rbegin()->first <= 0) return {};
+        return int(most_);
+    }
+
+private:
+    static constexpr std::size_t kLeast = 6, kAllOfADouble = 15, kSeveral = 3;
+    std::size_t most_ = 0; ///< digits of a number, without leading zeros
+    /// By the power of ten of the last digit, some different numbers with so many digits.
+    std::map<std::int64_t, std::set<std::string_view>> full_;
+};
 
 class ObjReader {
 public:
@@ -267,7 +299,7 @@ public:
     {
         check_encoding(text);
         if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
-        for (Statements s(text); s.next();) statement(s);
+        for (Statements s(text, name_); s.next();) statement(s);
         if (out_.lines.faces.empty())
             throw FormatError(name_, 0,
                               text.empty()
@@ -283,7 +315,7 @@ public:
         finish_tags();
         mesh().name = out_.lines.file = name_;
         place();
-        if (out_.placement.is_moved()) warn_of_digits(digits_of(text));
+        if (out_.placement.is_moved()) warn_of_digits();
         return std::move(out_);
     }
 
@@ -300,7 +332,9 @@ private:
         if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
             throw FormatError(name_, 0, "is UTF-16 text; save it as UTF-8");
         if (std::size_t const at = text.find('\0'); at != text.npos)
-            fail(1 + int(std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n')),
+            fail(int(std::min<std::ptrdiff_t>(
+                     INT_MAX,
+                     1 + std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n'))),
                  fmt::format("byte {} is zero: this is no text, or UTF-16; an OBJ file is ASCII or "
                              "UTF-8",
                              at));
@@ -377,6 +411,7 @@ private:
             if (i >= 3) continue;
             if (reading == Reading::TooLarge || std::abs(out) > kMaxCoordinate)
                 refuse_size(words[i + 1], line);
+            digits_.see(words[i + 1]);
             float nearest = 0;
             if (is_between_floats(out) && is_number(words[i + 1], nearest) &&
                 std::isnormal(nearest))
@@ -530,24 +565,31 @@ private:
             mesh().coordinates = std::move(coordinates_);
     }
 
+    // \param kind  of tags; like ones are counted
+    void note_tag(int line, std::string const& kind, std::string const& text)
+    {
+        notes_.count("tag: " + kind, line, [&] { return text; });
+    }
+
     void tag(std::vector<std::string_view> const& words, int line)
     {
-        auto const skip = [&](std::string const& why) {
-            notes_.add(line, why + ": the tag is skipped");
+        auto const skip = [&](char const* kind, std::string const& why) {
+            note_tag(line, kind, why + ": the tag is skipped");
         };
         std::size_t counts[3] = {};
         std::string_view form = words.size() > 2 ? words[2] : "";
         for (int i = 0; i < 3; ++i) {
             std::size_t const slash = form.find('/');
             if (!is_number(form.substr(0, slash), counts[i]) || (i < 2) != (slash != form.npos))
-                return skip("tag is not 'name ints/floats/strings'");
+                return skip("form", "tag is not 'name ints/floats/strings'");
             form = slash == form.npos ? "" : form.substr(slash + 1);
         }
         std::string const what = fmt::format("tag '{}'", shown(words[1]));
         std::size_t const has = words.size() - 3;
         for (std::size_t expected = 0; std::size_t c : counts)
             if (c > has || (expected += c) > has)
-                return skip(fmt::format("{} announces {} values and has {}", what, words[2], has));
+                return skip("lacks",
+                            fmt::format("{} announces {} values and has {}", what, words[2], has));
         Tag t{line, std::string(words[1]), {}, {}, {}};
         auto word = words.begin() + 3;
         for (std::size_t i = 0; i < counts[0] + counts[1]; ++i, ++word) {
@@ -556,7 +598,7 @@ private:
             bool const integer = i < counts[0], endless = *word == "inf" || *word == "infinite";
             if (endless) x = kInfinitelySharp;
             if (integer ? !is_number(*word, k) : !endless && !is_number(*word, x))
-                return skip(fmt::format("{} has the value '{}'", what, shown(*word)));
+                return skip("value", fmt::format("{} has the value '{}'", what, shown(*word)));
             if (integer)
                 t.ints.push_back(k);
             else
@@ -564,16 +606,18 @@ private:
         }
         t.strings.assign(word, word + std::ptrdiff_t(counts[2]));
         if (word + std::ptrdiff_t(counts[2]) != words.end())
-            notes_.add(line, fmt::format("{} announces {} values and has {}: the rest is left out",
-                                         what, words[2], has));
+            note_tag(line, "rest",
+                     fmt::format("{} announces {} values and has {}: the rest is left out", what,
+                                 words[2], has));
         tags_.push_back(std::move(t));
     }
 
     bool in_range(Tag const& t, std::int64_t value, std::size_t limit, char const* what)
     {
         if (value >= 0 && value < std::int64_t(limit)) return true;
-        notes_.add(t.line, fmt::format("tag '{}' names {} {}, the file has 0 to {}: skipped",
-                                       t.name, what, value, std::int64_t(limit) - 1));
+        note_tag(t.line, t.name + " names " + what,
+                 fmt::format("tag '{}' names {} {}, the file has 0 to {}: skipped", t.name, what,
+                             value, std::int64_t(limit) - 1));
         return false;
     }
 
@@ -589,24 +633,27 @@ private:
     {
         std::size_t const n = t.floats.size(), items = t.ints.size() / ints;
         if (n == 0)
-            notes_.add(t.line,
-                       fmt::format("tag '{}' has no sharpness: it is infinitely sharp", t.name));
+            note_tag(t.line, t.name + " has none",
+                     fmt::format("tag '{}' has no sharpness: it is infinitely sharp", t.name));
         for (float s : t.floats)
             if (s < 0) {
-                notes_.add(t.line,
-                           fmt::format("tag '{}' has the sharpness {}: taken as 0", t.name, s));
+                note_tag(t.line, t.name + " below 0",
+                         fmt::format("tag '{}' has the sharpness {}: taken as 0", t.name, s));
                 break;
             }
         if (n <= 1 || n == items || n > (items - 1) * ints) return true;
-        notes_.add(t.line, fmt::format("tag '{}' has {} sharpnesses for {} {}: the tag is skipped",
-                                       t.name, n, items, ints == 2 ? "edges" : "vertices"));
+        note_tag(t.line, t.name + " number",
+                 fmt::format("tag '{}' has {} sharpnesses for {} {}: the tag is skipped", t.name, n,
+                             items, ints == 2 ? "edges" : "vertices"));
         return false;
     }
 
     void apply(Tag const& t)
     {
         std::size_t const vertices = positions_.size(), faces = mesh().faces();
-        auto const left_out = [&](std::string const& what) { notes_.add(t.line, what); };
+        auto const left_out = [&](std::string const& what, char const* kind = nullptr) {
+            note_tag(t.line, kind ? kind : what, what);
+        };
         if (t.name == "crease") {
             std::size_t const edges = t.ints.size() / 2;
             if (t.ints.size() % 2)
@@ -619,9 +666,10 @@ private:
                     continue;
                 if (!is_edge(std::uint32_t(a), std::uint32_t(b)))
                     left_out(
-                        fmt::format("crease {}-{} runs along no edge of the mesh: skipped", a, b));
+                        fmt::format("crease {}-{} runs along no edge of the mesh: skipped", a, b),
+                        "crease along no edge");
                 else
-                    creases_[edge_of(std::uint32_t(a), std::uint32_t(b))] = {
+                    creases_[ordered_edge(std::uint32_t(a), std::uint32_t(b))] = {
                         std::uint32_t(a), std::uint32_t(b), sharpness(t, i, 2)};
             }
         } else if (t.name == "corner") {
@@ -648,26 +696,22 @@ private:
                                      "faces, as by rule {}",
                                      t.name, kLinear));
         } else {
-            left_out(fmt::format("tag '{}' is not known and is skipped", shown(t.name)));
+            left_out(fmt::format("tag '{}' is not known and is skipped", shown(t.name)), "unknown");
         }
     }
 
     using Edge = std::pair<std::uint32_t, std::uint32_t>;
-    static Edge edge_of(std::uint32_t a, std::uint32_t b)
-    {
-        return {std::min(a, b), std::max(a, b)};
-    }
     bool is_edge(std::uint32_t a, std::uint32_t b)
     {
         if (edges_.empty()) {
             for (std::size_t f = 0; f < mesh().faces(); ++f) {
                 auto const v = mesh().face(f);
                 for (std::size_t i = 0; i < v.size(); ++i)
-                    edges_.push_back(edge_of(v[i], v[(i + 1) % v.size()]));
+                    edges_.push_back(ordered_edge(v[i], v[(i + 1) % v.size()]));
             }
             std::sort(edges_.begin(), edges_.end());
         }
-        return std::binary_search(edges_.begin(), edges_.end(), edge_of(a, b));
+        return std::binary_search(edges_.begin(), edges_.end(), ordered_edge(a, b));
     }
 
     // What is not sharp has no tag.
@@ -704,9 +748,8 @@ private:
             p = clamp(p, -kFarthest, kFarthest);
     }
 
-    void warn_of_digits(WrittenDigits const& digits)
+    void warn_of_digits()
     {
-        constexpr int kAllOfADouble = 15;
         constexpr double kBad = 1e-3;
         double rounding = 0;
         glm::dvec3 const shift = out_.placement.to_file(glm::dvec3(0));
@@ -718,9 +761,15 @@ private:
             int exponent = 0;
             std::frexp(most, &exponent);
             double half = std::ldexp(1.0, exponent - 54);
-            if (double written = 0; digits.most < kAllOfADouble &&
-                                    is_number(fmt::format("5e{}", digits.place[k] - 1), written))
-                half = std::max(half, written);
+            if (auto const digits = digits_.limit()) {
+                // d.dde+06: half of the last of so many digits
+                std::string const most_in_words = fmt::format("{:.{}e}", most, *digits - 1);
+                int power = 0;
+                double written = 0;
+                if (is_number(most_in_words.substr(most_in_words.find('e') + 1), power) &&
+                    is_number(fmt::format("5e{}", power - *digits), written))
+                    half = std::max(half, written);
+            }
             rounding = std::max(rounding, half);
         }
         double shortest = INFINITY;
@@ -736,7 +785,7 @@ private:
         if (!(rounding > kBad * shortest)) return;
         notes_.add(out_.lines.vertices[a],
                    fmt::format("so far from the origin the file's coordinates are good to {:g}, "
-                               "{:.2g} % of the edge between vertices {} and {}: more digits, or "
+                               "{:.3g} % of the edge between vertices {} and {}: more digits, or "
                                "a mesh nearer to the origin, would keep its shape",
                                rounding, 100 * rounding / shortest, a + 1, b + 1));
     }
@@ -749,7 +798,6 @@ private:
 
     static constexpr float kFarthest = 1e9f;
     static constexpr std::uint32_t kNone = 0xffffffffu;
-    static constexpr float kInfinitelySharp = 10;
     static constexpr std::int64_t kLinear = 5;
 
     std::string const& name_;
@@ -757,6 +805,7 @@ private:
     ObjFile out_;
     std::vector<glm::dvec3> positions_;
     std::vector<InBetween> in_between_;
+    WrittenDigits digits_;
     std::vector<glm::vec2> coordinates_;
     std::size_t normals_ = 0;
     ForwardIndices vertex_indices_, coordinate_indices_, normal_indices_;

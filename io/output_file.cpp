@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/output_file.h"
 
+#include <cassert>
 #include <cerrno>
 #include <charconv>
+#include <cstdlib>
 #include <mutex>
 #include <optional>
 #include <set>
@@ -87,6 +89,7 @@ struct OutputFile::Impl {
     struct stat status = {};
     bool exists = false;
     int fd = -1;
+    bool closed = false, committed = false;
     std::string buffer;
 
     [[noreturn]] void fail(std::string const& why) const
@@ -176,9 +179,15 @@ struct OutputFile::Impl {
             make_in_folder();
         if (fd < 0) fail_to_write(errno);
         if (kind == Kind::File && exists) {
-            // Only root may give files away; others already own what they may replace, or a copy.
-            [[maybe_unused]] int const ignored = fchown(fd, status.st_uid, status.st_gid);
-            if (fchmod(fd, status.st_mode & 0777) != 0) fail_to_write(errno);
+            // Only root may give files away, others to a group that they are in. Another group
+            // gets no more than it had as one of all others.
+            struct stat now = {};
+            bool const kept = fchown(fd, status.st_uid, status.st_gid) == 0 ||
+                              fchown(fd, uid_t(-1), status.st_gid) == 0 ||
+                              (fstat(fd, &now) == 0 && now.st_gid == status.st_gid);
+            mode_t const mode = status.st_mode & 0777;
+            if (fchmod(fd, kept ? mode : (mode & 0707) | (mode & 0007) << 3) != 0)
+                fail_to_write(errno);
         }
     }
 
@@ -225,6 +234,20 @@ fs::path const& OutputFile::path() const
     return impl_->given;
 }
 
+bool OutputFile::names_stream(fs::path const& path)
+{
+    Impl m;
+    m.given = path;
+    try {
+        m.resolve();
+    } catch (WriteError const&) {
+        return false;
+    }
+    if (m.kind == Impl::Kind::Descriptor) return true;
+    return stat(m.target.c_str(), &m.status) == 0 && !S_ISREG(m.status.st_mode) &&
+           !S_ISDIR(m.status.st_mode);
+}
+
 bool OutputFile::is_stream() const
 {
     return impl_->kind != Impl::Kind::File;
@@ -247,12 +270,21 @@ bool OutputFile::is_same(OutputFile const& other) const
 
 fs::path OutputFile::scratch_folder() const
 {
-    return is_stream() ? fs::temp_directory_path() : impl_->target.parent_path();
+    if (!is_stream()) return impl_->target.parent_path();
+    std::error_code ec;
+    fs::path folder = fs::temp_directory_path(ec);
+    if (ec) {
+        char const* const named = std::getenv("TMPDIR");
+        impl_->fail("needs a folder for temporary files, TMPDIR is " +
+                    (named ? "'" + std::string(named) + "'" : "not set") + ": " + ec.message());
+    }
+    return folder;
 }
 
 void OutputFile::write(std::string_view bytes)
 {
     Impl& m = *impl_;
+    assert(!m.closed);
     constexpr std::size_t kBlock = 1 << 16;
     if (m.fd < 0) m.open_target();
     if (m.buffer.size() + bytes.size() < kBlock) {
@@ -267,6 +299,7 @@ void OutputFile::write(std::string_view bytes)
 void OutputFile::close()
 {
     Impl& m = *impl_;
+    m.closed = true;
     if (m.fd < 0) return;
     m.send(m.buffer);
     m.buffer.clear();
@@ -277,6 +310,8 @@ void OutputFile::close()
 void OutputFile::commit()
 {
     Impl& m = *impl_;
+    assert(!m.committed);
+    m.committed = true;
     if (m.fd < 0 && m.temporary.empty() && !is_stream()) m.open_target();
     close();
     if (m.temporary.empty()) return;

@@ -20,7 +20,10 @@ struct WriteError : Error {
 /// Where a result goes.
 ///
 /// A regular file, old or new, is whole or as it was: bytes go to a temporary in its folder, which
-/// commit() renames. An old file's permissions and owner stay; symbolic links are followed.
+/// commit() renames. Symbolic links are followed. An old file's permissions stay, and its owner and
+/// group as far as the process may give files away: root may, others may give a file to a group
+/// that they are in. Else the file is the process's, and where the group is another it may do what
+/// all others may.
 ///
 /// A *stream* gets the bytes as they come: a device, a FIFO, an open descriptor (/dev/stdout,
 /// /dev/fd/63), and standard output, "-". It is opened with its first bytes, since a FIFO waits
@@ -36,18 +39,21 @@ public:
     OutputFile(OutputFile&&) noexcept;
 
     std::filesystem::path const& path() const; ///< as given
+    /// Whether a path is a stream's, writable or not.
+    static bool names_stream(std::filesystem::path const& path);
     bool is_stream() const;
     bool is_standard_output() const;
     /// Would what goes here and there mix, or one replace the other? Not on a character device.
     bool is_same(OutputFile const& other) const;
-    /// Where large temporary data belongs: the file's folder; of a stream, the system's.
+    /// Where large temporary data belongs: the file's folder; of a stream, the system's. Throws
+    /// WriteError where the system names none.
     std::filesystem::path scratch_folder() const;
 
     /// Each throws WriteError where bytes are lost: a full disk, a limit, a reader that is gone.
     void write(std::string_view bytes);
-    /// No more bytes come.
+    /// No more bytes may come.
     void close();
-    /// Closes, and puts the file in its place.
+    /// Closes, and puts the file in its place; once.
     void commit();
 
 private:

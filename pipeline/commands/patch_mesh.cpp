@@ -94,15 +94,13 @@ std::vector<std::uint32_t> soft_boundary(Topology const& topology)
     ControlMesh const& mesh = topology.mesh();
     std::vector<std::pair<std::uint32_t, std::uint32_t>> sharp;
     for (ControlMesh::Crease const& c : mesh.creases)
-        if (c.sharpness >= 10) sharp.emplace_back(std::min(c.a, c.b), std::max(c.a, c.b));
+        if (c.sharpness >= kInfinitelySharp) sharp.push_back(ordered_edge(c.a, c.b));
     std::sort(sharp.begin(), sharp.end());
     std::vector<std::uint32_t> out;
     for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
         if (topology.twin(h) != Topology::kNone) continue;
         std::uint32_t const a = topology.vertex_of(h), b = topology.vertex_of(topology.next(h));
-        if (std::binary_search(sharp.begin(), sharp.end(),
-                               std::pair(std::min(a, b), std::max(a, b))))
-            continue;
+        if (std::binary_search(sharp.begin(), sharp.end(), ordered_edge(a, b))) continue;
         out.push_back(mesh.file_vertex(a));
         out.push_back(mesh.file_vertex(b));
     }

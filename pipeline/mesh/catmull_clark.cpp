@@ -102,7 +102,9 @@ ControlMesh catmull_clark_step(Topology const& topology)
     for (std::uint32_t f : mesh.holes)
         for (HalfEdge h = mesh.face_start[f]; h < mesh.face_start[f + 1]; ++h)
             out.holes.push_back(h);
-    auto const softer = [](float sharpness) { return sharpness >= 10 ? sharpness : sharpness - 1; };
+    auto const softer = [](float sharpness) {
+        return sharpness >= kInfinitelySharp ? sharpness : sharpness - 1;
+    };
     for (auto const& c : mesh.corners)
         if (float const left = softer(c.sharpness); left > 0)
             out.corners.push_back({c.vertex, left});

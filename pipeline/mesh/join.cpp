@@ -168,11 +168,6 @@ std::string number(double x)
     return std::string(digits, std::to_chars(digits, digits + sizeof digits, x).ptr);
 }
 
-std::pair<std::uint32_t, std::uint32_t> ordered(std::uint32_t a, std::uint32_t b)
-{
-    return {std::min(a, b), std::max(a, b)};
-}
-
 std::size_t different(std::span<std::uint32_t const> face)
 {
     std::vector<std::uint32_t> sorted(face.begin(), face.end());
@@ -251,7 +246,7 @@ JoinedMesh join_vertices(ControlMesh mesh, double distance, Placement const& pla
     std::vector<ControlMesh::Crease> creases;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> crease_of;
     for (ControlMesh::Crease const& c : mesh.creases) {
-        auto const [a, b] = ordered(to[c.a], to[c.b]);
+        auto const [a, b] = ordered_edge(to[c.a], to[c.b]);
         if (a == b) continue;
         auto const [at, first] = crease_of.emplace(std::pair(a, b), creases.size());
         if (first) creases.push_back({to[c.a], to[c.b], c.sharpness});
@@ -268,7 +263,7 @@ JoinedMesh join_vertices(ControlMesh mesh, double distance, Placement const& pla
         sharpness = std::max(sharpness, c.sharpness);
     }
     mesh.corners = std::move(corners);
-    for (auto& [a, b] : mesh.slits) std::tie(a, b) = ordered(to[a], to[b]);
+    for (auto& [a, b] : mesh.slits) std::tie(a, b) = ordered_edge(to[a], to[b]);
     std::sort(mesh.slits.begin(), mesh.slits.end());
     out.mesh = std::move(mesh);
     return out;
@@ -312,7 +307,7 @@ Seams find_seams(Topology const& topology, double within)
         if (topology.twin(h) != Topology::kNone) continue;
         std::uint32_t const a = topology.vertex_of(h), b = topology.vertex_of(topology.next(h));
         add(a), add(b);
-        edges.push_back({{a, b}, {}, ordered(mesh.file_vertex(a), mesh.file_vertex(b))});
+        edges.push_back({{a, b}, {}, ordered_edge(mesh.file_vertex(a), mesh.file_vertex(b))});
     }
     std::vector<glm::dvec3> points;
     for (std::uint32_t v : vertices) points.emplace_back(mesh.positions[v]);

@@ -10,8 +10,6 @@ namespace tessemu {
 
 namespace {
 
-constexpr float kInfinitelySharp = 10;
-
 // A mesh of some of another's faces and corners, and where they come from.
 struct Kept {
     ControlMesh mesh; ///< faces alone
@@ -45,14 +43,7 @@ Kept without_degenerate_faces(ControlMesh const& mesh, MeshRepairs& repairs)
     return out;
 }
 
-struct Edge {
-    std::uint32_t a, b; ///< a < b
-    friend auto operator<=>(Edge const&, Edge const&) = default;
-};
-Edge edge_of(std::uint32_t a, std::uint32_t b)
-{
-    return {std::min(a, b), std::max(a, b)};
-}
+using Edge = std::pair<std::uint32_t, std::uint32_t>; // ordered
 
 // Which corners of a mesh share a vertex through shared edges, and which edges are not shared as
 // they should be.
@@ -66,7 +57,7 @@ public:
         for (std::uint32_t f = 0; f < mesh.faces(); ++f)
             for (HalfEdge h = mesh.face_start[f]; h < mesh.face_start[f + 1]; ++h) {
                 next_[h] = h + 1 < mesh.face_start[f + 1] ? h + 1 : mesh.face_start[f];
-                uses.emplace_back(edge_of(from(h), to(h)), h);
+                uses.emplace_back(ordered_edge(from(h), to(h)), h);
             }
         std::sort(uses.begin(), uses.end());
         for (std::size_t i = 0, end = 0; i < uses.size(); i = end) {
@@ -113,7 +104,7 @@ private:
 std::vector<std::uint32_t> edges_at(std::vector<Edge> const& edges, std::size_t vertices)
 {
     std::vector<std::uint32_t> out(vertices);
-    for (Edge e : edges) ++out[e.a], ++out[e.b];
+    for (Edge e : edges) ++out[e.first], ++out[e.second];
     return out;
 }
 
@@ -147,7 +138,7 @@ ManifoldMesh make_manifold(ControlMesh mesh)
         if (!faces_at[v]) repairs.unused.add(mesh.file_vertex(v));
         if (fans_at[v] > 1) repairs.split.add(mesh.file_vertex(v)), split = true;
     }
-    for (Edge e : fans.cut) repairs.cut.add(mesh.file_vertex(e.a));
+    for (Edge e : fans.cut) repairs.cut.add(mesh.file_vertex(e.first));
     if (kept.faces.size() == mesh.faces() && corners == mesh.face_vertices.size() &&
         !repairs.unused.number && !split && fans.cut.empty()) {
         out.mesh = std::move(mesh);
@@ -185,8 +176,8 @@ ManifoldMesh make_manifold(ControlMesh mesh)
         for (std::uint32_t v : copies_of[c.vertex]) m.corners.push_back({v, c.sharpness});
     std::vector<std::pair<Edge, Edge>> edges; // in the given mesh, and now
     for (HalfEdge h = 0; h < corners; ++h)
-        edges.emplace_back(edge_of(fans.from(h), fans.to(h)),
-                           edge_of(vertex(h), vertex(fans.next(h))));
+        edges.emplace_back(ordered_edge(fans.from(h), fans.to(h)),
+                           ordered_edge(vertex(h), vertex(fans.next(h))));
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
     auto const each_copy = [&](Edge e, auto const& f) {
@@ -194,7 +185,9 @@ ManifoldMesh make_manifold(ControlMesh mesh)
         for (; at != edges.end() && at->first == e; ++at) f(at->second);
     };
     for (auto const& c : mesh.creases)
-        each_copy(edge_of(c.a, c.b), [&](Edge e) { m.creases.push_back({e.a, e.b, c.sharpness}); });
+        each_copy(ordered_edge(c.a, c.b), [&](Edge e) {
+            m.creases.push_back({e.first, e.second, c.sharpness});
+        });
     std::vector<std::uint32_t> kept_as(mesh.faces(), Topology::kNone);
     for (std::uint32_t f = 0; f < kept.faces.size(); ++f) kept_as[kept.faces[f]] = f;
     for (std::uint32_t f : mesh.holes)
@@ -203,7 +196,7 @@ ManifoldMesh make_manifold(ControlMesh mesh)
     // What is no manifold is infinitely sharp.
     m.cut_edges = mesh.cut_edges + std::uint32_t(fans.cut.size());
     for (Edge e : fans.cut)
-        each_copy(e, [&](Edge c) { m.creases.push_back({c.a, c.b, kInfinitelySharp}); });
+        each_copy(e, [&](Edge c) { m.creases.push_back({c.first, c.second, kInfinitelySharp}); });
     auto const cut_at = edges_at(fans.cut, vertices), open_at = edges_at(fans.boundary, vertices),
                edges_of = edges_at(fans.edges, vertices);
     for (std::uint32_t v = 0; v < vertices; ++v) {

@@ -26,10 +26,19 @@ enum class BoundaryRule {
     EdgeOnly = 2,
 };
 
+/// From this sharpness on an edge or vertex stays as sharp at every step, as in OpenSubdiv.
+inline constexpr float kInfinitelySharp = 10;
+
+/// An edge by its vertices, the lower number first.
+inline std::pair<std::uint32_t, std::uint32_t> ordered_edge(std::uint32_t a, std::uint32_t b)
+{
+    return {std::min(a, b), std::max(a, b)};
+}
+
 struct ControlMesh {
     struct Crease {
         std::uint32_t a, b;
-        float sharpness; ///< 10 and above: infinitely sharp
+        float sharpness; ///< kInfinitelySharp and above: infinitely
     };
     struct Corner {
         std::uint32_t vertex;
@@ -65,8 +74,7 @@ struct ControlMesh {
     }
     bool is_slit(std::uint32_t a, std::uint32_t b) const
     {
-        return std::binary_search(slits.begin(), slits.end(),
-                                  std::pair(std::min(a, b), std::max(a, b)));
+        return std::binary_search(slits.begin(), slits.end(), ordered_edge(a, b));
     }
 
     std::size_t faces() const { return face_start.size() - 1; }

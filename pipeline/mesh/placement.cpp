@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace tessemu {
@@ -28,7 +29,12 @@ Placement::Placement(std::span<glm::dvec3 const> points)
     glm::dvec3 const center = low + (high - low) / 2.0;
     if (length(center) > kFar * diagonal) {
         double const step = std::ldexp(1.0, power ? exponent - 1 : exponent);
-        shift_ = floor(center / step + 0.5) * step;
+        // Values further off than a step, and not further from each other, are multiples of the
+        // last bit of the nearest to 0. So is the shift, and the differences are no larger than that
+        // value: exact. Nearer ones may have bits that a shift would push out.
+        for (int k = 0; k < 3; ++k)
+            if (std::max(low[k], -high[k]) >= step)
+                shift_[k] = std::floor(center[k] / step + 0.5) * step;
     }
     double const most = std::ldexp(1.0, kScale);
     while (diagonal * scale_ > most) scale_ /= most * most;

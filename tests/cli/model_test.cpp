@@ -213,19 +213,18 @@ TEST(Program, LengthsOfAScaledCageAreTheFiles)
 TEST(Program, WarnsWhereTheFilesOwnDigitsLoseAnEdge)
 {
     fs::path const cage = scratch() / "digits.obj";
-    auto const err = [&](std::string const& digits) {
-        std::ofstream(cage) << "v 4000000" + digits + " 0 0\nv 4000001" + digits +
-                                   " 0 0\nv 4000001" + digits + " 1 0\nv 4000000" + digits +
-                                   " 1 0\nf 1 2 3 4\n";
+    auto const err = [&](std::string const& left, std::string const& right) {
+        std::ofstream(cage) << "v " + left + " 0 0\nv " + right + " 0 0\nv " + right + " 1 0\nv " +
+                                   left + " 1 0\nf 1 2 3 4\n";
         return run("info " + cage.string()).err;
     };
-    EXPECT_NE(
-        err(".00").find("digits.obj:1: so far from the origin the file's coordinates are good "
-                        "to 0.005, 0.5 % of the edge between vertices 1 and 2"),
-        std::string::npos)
-        << err(".00");
-    EXPECT_EQ(err(".000"), "");
-    EXPECT_EQ(err(".000000000"), "");
+    std::string const lost = err("4e+06", "4.00001e+06");
+    EXPECT_NE(lost.find("digits.obj:2: so far from the origin the file's coordinates are good to "
+                        "5, 500 % of the edge between vertices 2 and 3"),
+              std::string::npos)
+        << lost;
+    EXPECT_EQ(err("4000000", "4000001"), "");
+    EXPECT_EQ(err("4000000.00", "4000001.00"), "");
     std::ofstream(cage) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n"; // exact where it stands
     EXPECT_EQ(run("info " + cage.string()).err, "");
 }
@@ -398,6 +397,21 @@ TEST(Program, CheckSaysThatNothingWasCheckedAndJoinsVertices)
     Json const info = Json::parse(run("info " + cube.string() + " --join 0 --json -").out)["mesh"];
     EXPECT_EQ(info["vertices"], 8);
     EXPECT_EQ(info["boundary_edges"], 0);
+}
+
+// Joined, and cut along an edge of three faces: done and told once.
+TEST(Program, InfoJoinsAndCutsAsCheckDoes)
+{
+    fs::path const path = scratch() / "cube_with_a_fin.obj";
+    std::ofstream(path) << "v 5 5 5\n" + cube_of_24_vertices() + "v 0 0 9\nf -25 -24 -1\n";
+    std::string const rest = path.string() + " --join 0 --json - ";
+    Result const info = run("info " + rest), check = run("check --size 32x32 --rays 0 " + rest);
+    Json const i = Json::parse(info.out), c = Json::parse(check.out);
+    EXPECT_EQ(i["warnings"], c["warnings"]) << i["warnings"] << c["warnings"];
+    EXPECT_GE(i["warnings"].size(), 3u) << i["warnings"];
+    EXPECT_EQ(i["mesh"]["faces"], 7);
+    EXPECT_EQ(i["mesh"]["unused_vertices"], 1);
+    EXPECT_EQ(info.err, check.err.substr(0, info.err.size()));
 }
 
 TEST(Program, BreakFaceCountsTheFilesFaces)

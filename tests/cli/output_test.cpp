@@ -516,5 +516,34 @@ TEST_F(Output, OptionsThatAViewDoesNotUseAreNamed)
               "warning: --view cage does not use --tess\n");
 }
 
+TEST_F(Output, FramesAskOnlyForTheNamesThatTheyWrite)
+{
+    Result const r = shell("touch s.png; chmod 444 s.png; "
+                           "$T draw jug --size 16x16 --animate sway --frames 2 -o s.png");
+    EXPECT_EQ(r.status, 0) << r.err;
+    EXPECT_TRUE(fs::exists(here / "s_0001.png"));
+    EXPECT_EQ(read("s.png"), "");
+}
+
+TEST_F(Output, ATemporaryFolderThatIsMissingIsNamed)
+{
+    Result const r = shell("TMPDIR=/nowhere $T export jug --tess 1 -o -");
+    EXPECT_EQ(r.status, 2);
+    EXPECT_NE(r.err.find("standard output: needs a folder for temporary files, TMPDIR is "
+                         "'/nowhere': "),
+              std::string::npos)
+        << r.err;
+}
+
+TEST_F(Output, WhatAGroupMayDoGoesToNoOtherGroup)
+{
+    if (geteuid() != 0) GTEST_SKIP() << "only root can make a file of a foreign group";
+    Result const r = shell("chmod 777 .; touch a.json; chgrp 1234 a.json; chmod 672 a.json; "
+                           "setpriv --reuid=65534 --regid=65534 --clear-groups "
+                           "$T info jug --json a.json && stat -c '%a %u %g' a.json");
+    EXPECT_EQ(r.status, 0) << r.err;
+    EXPECT_TRUE(r.out.ends_with("\n622 65534 65534\n")) << r.out;
+}
+
 } // namespace
 } // namespace tessemu

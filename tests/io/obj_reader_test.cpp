@@ -102,6 +102,37 @@ TEST(ObjReader, WarnsAboutTagsThatItSkips)
     }
 }
 
+TEST(ObjReader, CountsLikeWarningsOfTags)
+{
+    for (auto const& [tag, other] : std::vector<std::pair<std::string, std::string>>{
+             {"t corner 1/1/0 99 2\n", "t corner 1/1/0 98 2\n"},
+             {"t crease 2/1/0 0 6 2\n", "t crease 2/1/0 1 7 2\n"},
+             {"t crease 2/1/0 0 1 x\n", "t corner 1/1/0 0 y\n"},
+             {"t one 0/0/0\n", "t two 0/0/0\n"},
+             {"t\n", "t crease\n"},
+             {"t corner 1/1/0 1 -1\n", "t corner 1/1/0 2 -2\n"},
+             {"t hole 0/0/0\n", "t hole 0/0/0\n"}}) {
+        std::string text = kCube + tag;
+        for (int i = 0; i < 199; ++i) text += other;
+        auto const warnings = read_obj(text, "a").warnings;
+        ASSERT_EQ(warnings.size(), 1u) << tag;
+        EXPECT_TRUE(warnings[0].starts_with("a:15: ")) << warnings[0];
+        EXPECT_TRUE(warnings[0].ends_with(" (and 199 more)")) << warnings[0];
+    }
+}
+
+// Digits that an exponent does not make up for are no zero.
+TEST(ObjReader, ANumberOfManyDigitsIsNotZero)
+{
+    std::string const huge = std::string(61, '9') + "e-1";
+    ObjFile const f = read_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nvt " + huge +
+                                   " 0\nf 1/1 2/1 3/1\nt crease 2/1/0 0 1 " + huge + "\n",
+                               "a");
+    EXPECT_EQ(f.warnings.size(), 2u);
+    EXPECT_TRUE(f.mesh.coordinates.empty());
+    EXPECT_TRUE(f.mesh.creases.empty());
+}
+
 RC_GTEST_PROP(ObjReader, AnyTextEitherReadsOrThrowsAFormatError, ())
 {
     auto const lines = *rc::gen::container<std::vector<std::string>>(rc::gen::oneOf(
@@ -117,6 +148,70 @@ RC_GTEST_PROP(ObjReader, AnyTextEitherReadsOrThrowsAFormatError, ())
         for (std::uint32_t v : f.mesh.face_vertices) RC_ASSERT(v < f.mesh.positions.size());
     } catch (FormatError const&) {
     }
+}
+
+// A unit quad so far off that the mesh is moved.
+std::string const kFarQuad =
+    "v 1000000 0 0\nv 1000001 0 0\nv 1000001 1 0\nv 1000000 1 0\nf -4 -3 -2 -1\n";
+
+TEST(ObjReader, AMovedMeshMayHaveAnyLinesBesideItsVertices)
+{
+    EXPECT_EQ(read_obj("p \\\nv\n" + kFarQuad, "a").mesh.faces(), 1u);
+    EXPECT_EQ(read_obj(kFarQuad + "l 1 2 \\\nv", "a").mesh.faces(), 1u);
+    EXPECT_EQ(read_obj("v 0.0e-2147483648 0.5E-99999999999999999999 0e2147483647\n" + kFarQuad, "a")
+                  .mesh.faces(),
+              1u);
+}
+
+RC_GTEST_PROP(ObjReader, AnyWordsBesideAMovedMeshReadOrThrowAFormatError, ())
+{
+    auto const words = *rc::gen::container<std::vector<std::string>>(rc::gen::element<std::string>(
+        "p", "l", "call", "curv", "t", "vt", "g", "#", "\\\n", "\\\nv", "\n", "\n", "1", "0.5",
+        "1/1/0", "corner", "v 1 2 3\n", "v 0.0e-2147483648 1.00001e+06 1\n"));
+    std::string text;
+    for (auto const& w : words) text += w + (w.ends_with('\n') ? "" : " ");
+    for (std::string const& all : {text + "\n\n" + kFarQuad, kFarQuad + text}) {
+        try {
+            ObjFile const f = read_obj(all, "a");
+            for (std::uint32_t v : f.mesh.face_vertices) RC_ASSERT(v < f.mesh.positions.size());
+        } catch (FormatError const&) {
+        }
+    }
+}
+
+// Whole numbers, halves and decimals in a fixed number may be exact; %g cuts what it does not hold.
+TEST(ObjReader, WarnsOfLostDigitsOnlyWhereTheFormatHasCutThem)
+{
+    auto const warnings = [](std::string const& far, std::string const& next,
+                             std::string const& rest = "") {
+        return read_obj("v " + far + " 0 0\nv " + next + " 0 0\nv " + next + " 1 0\nv " + far +
+                            " 1 0\nf 1 2 3 4\n" + rest,
+                        "a")
+            .warnings;
+    };
+    for (auto const& [far, next] :
+         std::vector<std::pair<std::string, std::string>>{{"100", "101"},
+                                                          {"100000", "100001"},
+                                                          {"1e6", "1000001"},
+                                                          {"123456789", "123456790"},
+                                                          {"100", "100.5"},
+                                                          {"4000000.00", "4000001.00"},
+                                                          {"4000000.12", "4000001.12"}})
+        EXPECT_EQ(warnings(far, next), std::vector<std::string>{}) << far;
+    EXPECT_EQ(warnings("100000", "100001", "v 1 2 1234.56\n"), std::vector<std::string>{});
+
+    std::vector<std::string> const lost = warnings("4.00001e+06", "4.00002e+06");
+    ASSERT_EQ(lost.size(), 1u);
+    EXPECT_TRUE(lost[0].starts_with("a:2: so far from the origin the file's coordinates are good "
+                                    "to 5, 500 % of the edge between vertices"))
+        << lost[0];
+    // Of three places the first two are those of a body as %g writes it.
+    EXPECT_EQ(warnings("100003", "100004",
+                       "v 100002 1.23457 0.333333\nv 1 2.34568 0.666667\nv 1 3.45679 -0.111111\n")
+                  .size(),
+              1u);
+    // Beyond what a double tells apart.
+    EXPECT_EQ(warnings("1000000000000000", "1000000000000001").size(), 1u);
 }
 
 TEST(ObjReader, NumbersRoundAsTheNearestFloat)
@@ -258,6 +353,8 @@ TEST(ObjReader, NumbersAreWholeDecimalWords)
     EXPECT_EQ(at("+1E+2"), 100.0f);
     EXPECT_EQ(at("1e-999"), 0.0f);
     EXPECT_EQ(at("0." + std::string(400, '0') + "1"), 0.0f);
+    EXPECT_EQ(at("0." + std::string(400, '0') + "1e-5"), 0.0f);
+    EXPECT_EQ(at("0." + std::string(400, '0') + "1e+402"), 10.0f);
     for (char const* word : {"1.0abc", "1,5", "1e", "--1", "+-1", "0x10", "1_000", "inf", "NaN",
                              "1.2.3", "1d5", "\xc2\xa0", "."})
         EXPECT_NE(message_of("v " + std::string(word) + " 0 0\n" + kCube).find("file.obj:1: "),

@@ -7,6 +7,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <vector>
 
 namespace tessemu {
@@ -76,6 +77,39 @@ RC_GTEST_PROP(Placement, MovesAndScalesPointsExactly, ())
         RC_ASSERT(p.to_file(own) == x);
         RC_ASSERT(p.from_file(x) == glm::vec3(own));
     }
+}
+
+TEST(Placement, LeavesAnAxisWhoseValuesAreNearTheOrigin)
+{
+    Placement const p(Points{{10000, 0.3, -0.7}, {10000.5, 1.9, -0.7}});
+    EXPECT_EQ(p.to_file(glm::dvec3(0)), glm::dvec3(10000, 0, 0));
+    EXPECT_EQ(p.from_file({10000, 0.3, 0}).y, 0.3f);
+}
+
+// The error of a difference is a double too, by Knuth's TwoSum.
+TEST(Placement, SubtractsTheShiftFromAnyDoublesExactly)
+{
+    std::mt19937_64 bits(1);
+    auto const number = [&](int exponent) { // below 2^exponent, of 53 bits
+        return std::ldexp(double(std::int64_t(bits()) >> 10), exponent - 53);
+    };
+    int moved = 0;
+    for (int n = 0; n < 20000; ++n) {
+        glm::dvec3 center;
+        for (int k = 0; k < 3; ++k) center[k] = number(int(bits() % 16));
+        Points points(3, center);
+        for (glm::dvec3& p : points)
+            for (int k = 0; k < 3; ++k) p[k] += number(int(bits() % 8) - 6);
+        Placement const placement(points);
+        glm::dvec3 const shift = placement.to_file(glm::dvec3(0));
+        for (glm::dvec3 const& p : points)
+            for (int k = 0; k < 3; ++k) {
+                double const d = p[k] - shift[k], b = p[k] - d, a = d + b;
+                ASSERT_EQ((p[k] - a) + (b - shift[k]), 0) << p[k] << " - " << shift[k];
+                moved += shift[k] != 0;
+            }
+    }
+    EXPECT_GT(moved, 20000);
 }
 
 TEST(Placement, RefusesAMeshWithoutExtentOrBeyondAllNumbers)
