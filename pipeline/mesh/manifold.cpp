@@ -229,7 +229,8 @@ std::vector<std::string> in_words(MeshRepairs const& r, FileLines const& lines)
     };
     say(r.repeated, "face", "faces", "names a vertex twice in a row and loses the repetition",
         "name a vertex twice in a row and lose the repetition");
-    say(r.dropped, "face", "faces", "has fewer than three different vertices, or names one twice, not in a row: left out",
+    say(r.dropped, "face", "faces",
+        "has fewer than three different vertices, or names one twice, not in a row: left out",
         "have fewer than three different vertices, or name one twice, not in a row: left out");
     say(r.unused, "vertex", "vertices", "is in no face: left out", "are in no face: left out");
     say(r.cut, "an edge at vertex", "edges",
