@@ -57,7 +57,9 @@ TEST(Shapes, AModellingProgramsFirstObjectsAreClosedOrOpenAsTheyAre)
         Result const r = run("check " + model.string() + " --json " + json.string());
         // A plane of one face shares no edge, and nothing of it can be checked.
         ASSERT_EQ(r.status, shape.name == "plane" ? 2 : 0) << r.out << r.err;
-        for (auto const& [name, verdict] : Json::parse(test::read_text(json))["verdicts"].items()) {
+        Json const result = Json::parse(test::read_text(json));
+        EXPECT_EQ(result["verdicts"].size(), 6u);
+        for (auto const& [name, verdict] : result["verdicts"].items()) {
             SCOPED_TRACE(name);
             std::string const word = verdict["verdict"];
             EXPECT_NE(word, "fail") << verdict.dump();
