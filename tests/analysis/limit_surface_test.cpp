@@ -156,10 +156,10 @@ TEST(LimitSurface, HasANormalAtAPole)
     LimitSurface const limit(topology, 3);
     std::size_t tips = 0;
     for (std::size_t v = 0; v < limit.positions().size(); ++v) {
-        EXPECT_NEAR(glm::length(limit.normals()[v]), 1, 1e-12);
+        EXPECT_NEAR(glm::length(limit.normals()[v]), 1, 8 * 0x1p-53); // v/|v| has 8 roundings
         if (glm::length(limit.positions()[v]) > 0) continue;
         ++tips;
-        EXPECT_NEAR(limit.normals()[v].z, 1, 1e-12); // of doubles, each sum's parts below 1
+        EXPECT_NEAR(limit.normals()[v].z, 1, 8 * 0x1p-53); // coordinates are dyadic: sums are exact
     }
     EXPECT_EQ(tips, 8u * 8); // a segment of the tip's row has eight points at level 3
 }

@@ -526,7 +526,7 @@ TEST(RayCheck, BalancesAtVertices)
     octahedron.positions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
     octahedron.triangles = {0, 1, 2, 1, 3, 2, 3, 4, 2, 4, 0, 2, 1, 0, 5, 3, 1, 5, 4, 3, 5, 0, 4, 5};
     RayCheck const c = check_rays(octahedron, RayAim::Vertices, 200000, 1, ThreadPool());
-    EXPECT_GT(c.misses, 1000u) << "Embree loses rays at vertices";
+    EXPECT_GT(c.misses, 1000u) << "Embree loses rays at vertices"; // else little is decided exactly
     EXPECT_TRUE(c.confirmed.empty());
 }
 

@@ -120,7 +120,7 @@ TEST(Cases, EveryThirdPartyCageIsDrawnByTheDefaultScheme)
             build_scheme(find_scheme("gregory-stencil"), load_model(file.path().string()).mesh);
         small.camera = frame_points(m.mesh->base().positions, {0.4f, 0.3f, 1}, 1);
         Frame const frame = draw_frame(*m.patches, small, ThreadPool(2));
-        EXPECT_GT(frame.statistics.pipeline.PSInvocations, 64u);
+        EXPECT_GT(frame.statistics.pipeline.PSInvocations, 64u); // a line across has 64
         ++drawn;
     }
     EXPECT_GT(drawn, 0);

@@ -24,15 +24,17 @@ glm::vec3 seen(Camera const& camera, float aspect, glm::vec3 p)
     return glm::vec3(row(0), row(1), row(2)) / row(3);
 }
 
-// Each dot of two unit vectors in floats: some roundings of 2^-24.
+// In units of 2^-24: a cross product stands off a right angle by 3, its unit vector by 1 more, and the
+// dot product here by 3. A unit vector's length is off by 4.5 (half of the square's 3, a root, a
+// quotient, a product), its square by 9 and 3 of the dot product. Both are below 16.
 void expect_right_angles(Camera const& c)
 {
     for (auto const& [a, b] : {std::pair(c.right(), c.true_up()),
                                {c.right(), c.backward()},
                                {c.true_up(), c.backward()}})
-        EXPECT_NEAR(glm::dot(a, b), 0, 1e-6f);
+        EXPECT_NEAR(glm::dot(a, b), 0, 0x1p-20f);
     for (glm::vec3 const& a : {c.right(), c.true_up(), c.backward()})
-        EXPECT_NEAR(glm::dot(a, a), 1, 1e-6f);
+        EXPECT_NEAR(glm::dot(a, a), 1, 0x1p-20f);
 }
 
 TEST(Camera, HasAFrameWhereUpRunsAlongTheViewOrIsZero)

@@ -78,22 +78,17 @@ TEST(WidePatches, AWarningCountsThem)
 {
     for (Cage const& cage : cages()) {
         SCOPED_TRACE(cage.shape.name + " of " + std::to_string(cage.edges));
-        std::string const stencils =
-            warning_of(build_scheme(find_scheme("gregory-stencil"), cage.shape.mesh), "dispatch");
-        EXPECT_EQ(stencils, !cage.wide_stencils
-                                ? ""
-                                : std::to_string(cage.wide_stencils) +
-                                      " patches have more than 32 inputs (up to " +
-                                      std::to_string(cage.inputs) +
-                                      "): a dispatch sums their control points before the draw");
-        std::string const rings =
-            warning_of(build_scheme(find_scheme("gregory-two-stage"), cage.shape.mesh), "dispatch");
-        EXPECT_EQ(rings, !cage.wide_rings
-                             ? ""
-                             : std::to_string(cage.wide_rings) +
-                                   " patches have a vertex of more than 15 edges (up to " +
-                                   std::to_string(cage.edges) +
-                                   "): a dispatch makes their corners before the draw");
+        auto const expect_warning = [&](char const* scheme, std::size_t patches,
+                                        std::string const& what) {
+            EXPECT_EQ(warning_of(build_scheme(find_scheme(scheme), cage.shape.mesh), "dispatch"),
+                      patches ? std::to_string(patches) + " patches have " + what : "");
+        };
+        expect_warning("gregory-stencil", cage.wide_stencils,
+                       "more than 32 inputs (up to " + std::to_string(cage.inputs) +
+                           "): a dispatch sums their control points before the draw");
+        expect_warning("gregory-two-stage", cage.wide_rings,
+                       "a vertex of more than 15 edges (up to " + std::to_string(cage.edges) +
+                           "): a dispatch makes their corners before the draw");
     }
 }
 
