@@ -12,8 +12,8 @@
 namespace tessemu {
 
 /// How a file writes the coordinates of its vertices: whether in a format of so many significant
-/// digits, such as %g, which has lost those behind. Whole numbers and a fixed number of decimals may
-/// be all there is to say.
+/// digits, such as %g, which has lost those behind. Whole numbers and a fixed number of decimals
+/// may be all there is to say.
 class WrittenDigits {
 public:
     /// \param number  a word that is one; the text outlives this

@@ -30,9 +30,9 @@ inline constexpr float kMaxTextureCoordinate = 1e9f;
 ///
 /// Coordinates are read in double; the mesh, placed by the vertices of its faces, has them in
 /// single precision, rounded once. Of a mesh that is moved a warning says where a double, or
-/// the file's format, has lost digits that are more than a thousandth of an edge. A format has where
-/// its numbers have at most 6 to 14 significant digits, as of %g, and not where they are whole or
-/// have a fixed number of decimals, which may be all there is to say.
+/// the file's format, has lost digits that are more than a thousandth of an edge. A format has
+/// where its numbers have at most 6 to 14 significant digits, as of %g, and not where they are
+/// whole or have a fixed number of decimals, which may be all there is to say.
 ///
 /// Lines end with LF, CR LF or CR; one that is read goes on after a backslash, a name or a comment
 /// does not. A UTF-8 byte order mark is skipped. Vertices that no face uses stay. A vt may have one

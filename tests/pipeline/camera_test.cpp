@@ -24,9 +24,9 @@ glm::vec3 seen(Camera const& camera, float aspect, glm::vec3 p)
     return glm::vec3(row(0), row(1), row(2)) / row(3);
 }
 
-// In units of 2^-24: a cross product stands off a right angle by 3, its unit vector by 1 more, and the
-// dot product here by 3. A unit vector's length is off by 4.5 (half of the square's 3, a root, a
-// quotient, a product), its square by 9 and 3 of the dot product. Both are below 16.
+// In units of 2^-24: a cross product stands off a right angle by 3, its unit vector by 1 more, and
+// the dot product here by 3. A unit vector's length is off by 4.5 (half of the square's 3, a root,
+// a quotient, a product), its square by 9 and 3 of the dot product. Both are below 16.
 void expect_right_angles(Camera const& c)
 {
     for (auto const& [a, b] : {std::pair(c.right(), c.true_up()),

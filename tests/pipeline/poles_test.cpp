@@ -29,9 +29,9 @@ ControlMesh mesh_of(std::vector<glm::vec3> const& points,
     return m;
 }
 
-// A dome of quads whose top row of n vertices, a multiple of four, lies on one point; the next row is
-// a square around it, `drop` below. Coordinates are halves and drops eighths: the faces' areas and
-// their sums are exact in float, so the mean of the top's faces is z times a number.
+// A dome of quads whose top row of n vertices, a multiple of four, lies on one point; the next row
+// is a square around it, `drop` below. Coordinates are halves and drops eighths: the faces' areas
+// and their sums are exact in float, so the mean of the top's faces is z times a number.
 ControlMesh dome(int n, double drop)
 {
     ControlMesh m;
@@ -144,9 +144,9 @@ std::vector<Case> cases()
     };
 }
 
-// v/|v| in float has 8 roundings: a product's and two sums' of the square, half of them in the root,
-// the root's, the quotient's and a product's, at most. A pole's normal goes through it twice, as the
-// dispatch's unit vector and as the cross product of its tangents: 16 units of 2^-24.
+// v/|v| in float has 8 roundings: a product's and two sums' of the square, half of them in the
+// root, the root's, the quotient's and a product's, at most. A pole's normal goes through it twice,
+// as the dispatch's unit vector and as the cross product of its tangents: 16 units of 2^-24.
 constexpr double kUnit = 16 * 0x1p-24;
 
 TEST(Poles, NormalsThereAreOfUnitLengthAndTheSameFromAllPatches)
@@ -205,8 +205,8 @@ TEST(Poles, InAPoseTheyTurnWithTheFacesAround)
             area += cross(at(8 + j) - at(0), at(8 + (j + 1) % 8) - at(0));
         }
         glm::dvec3 const expected = normalize(area), top(pose->posed(0, mesh.positions[0]));
-        // In units u = 2^-24: a posed point has 9 roundings of its largest coordinate, 1.5, here and
-        // in the shader; of its offset, which is at least 1.2, that is 2 9 1.5 / 1.2 < 23, of a
+        // In units u = 2^-24: a posed point has 9 roundings of its largest coordinate, 1.5, here
+        // and in the shader; of its offset, which is at least 1.2, that is 2 9 1.5 / 1.2 < 23, of a
         // product of two offsets 46. The eight products' sum has 8 + 8 roundings more of both
         // products of a component. The offsets' lengths multiply to 1.42 times the area: (46 + 32)
         // 1.42 + kUnit < 127 u < 1e-5.
