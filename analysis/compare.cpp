@@ -364,7 +364,7 @@ SurfaceComparison compare_with_limit(PatchMesh const& patches, FrameSettings set
     for (std::uint32_t face = 0; face < mesh.mesh().faces(); ++face) {
         if (hidden[face]) continue;
         for (std::size_t f = limit.first_quad(face); f < limit.first_quad(face + 1); ++f) {
-            auto const q = limit.quads().face(f);
+            LimitSurface::Quad const& q = limit.quads()[f];
             smooth.index.insert(smooth.index.end(), {q[0], q[1], q[2], q[0], q[2], q[3]});
         }
     }

@@ -2,12 +2,11 @@
 #include "analysis/limit_surface.h"
 
 #include "pipeline/mesh/catmull_clark.h"
-#include "pipeline/mesh/limit_constants.h"
+#include "pipeline/mesh/limit.h"
+#include "pipeline/mesh/poles.h"
 
 #include <glm/geometric.hpp>
 
-#include <array>
-#include <cmath>
 #include <memory>
 
 namespace tessemu {
@@ -16,99 +15,43 @@ namespace {
 
 using Vec = glm::dvec3;
 
-// Limit position and normal direction of a vertex whose faces are quads.
-std::pair<Vec, Vec> limit(Topology const& t, std::vector<Vec> const& x, std::uint32_t v)
+Vec unit_or_zero(Vec const& n)
 {
-    auto const ring = t.ring(v);
-    int const n = int(ring.size());
-    auto const edge = [&](int j) { return x[t.vertex_of(t.next(ring[std::size_t(j)]))]; };
-    auto const diagonal = [&](int j) {
-        return x[t.vertex_of(t.next(t.next(ring[std::size_t(j)])))];
-    };
-    if (t.is_boundary(v)) {
-        Vec const first = edge(0), last = x[t.vertex_of(t.previous(ring.back()))];
-        bool const fixed = n == 1 && !t.mesh().smooth_corners();
-        Vec const p = fixed ? x[v] : (first + 4.0 * x[v] + last) / 6.0;
-        if (n == 1) return {p, cross(first - x[v], last - x[v])};
-        double const co = cos_pi(1, n), s = sin_pi(1, n);
-        Vec b = -4 * s * x[v] - (1 + 2 * co) * ((1 + co) / s) * (first + last);
-        for (int j = 1; j < n; ++j) b += 4 * sin_pi(j, n) * edge(j);
-        for (int j = 0; j < n; ++j) b += (sin_pi(j, n) + sin_pi(j + 1, n)) * diagonal(j);
-        return {p, cross(first - last, b)};
-    }
-    double const k = n, sigma = loop09_sigma(n);
-    double const on_edge = 1 + sigma * cos_pi(1, n), on_face = sigma;
-    Vec p = k * k * x[v], A(0), B(0);
-    for (int j = 0; j < n; ++j) {
-        Vec const d = edge(j), q = diagonal(j);
-        p += 4.0 * d + q;
-        A += on_edge * cos_pi(2 * j, n) * d + on_face * cos_pi(2 * j + 1, n) * q;
-        B += on_edge * sin_pi(2 * j, n) * d + on_face * sin_pi(2 * j + 1, n) * q;
-    }
-    return {p / (k * (k + 5)), cross(A, B)};
+    double const length = glm::length(n);
+    return length > 0 ? n / length : Vec(0);
 }
 
-} // namespace
-
-LimitSurface::LimitSurface(Topology const& topology, int level) : level_(level)
+// The vertices around a vertex of a mesh of quads.
+Ring<Vec> ring_of(Topology const& t, std::vector<Vec> const& x, std::uint32_t v)
 {
-    if (level < 1 || level > 7)
-        throw LimitError("refinement level", std::uint64_t(std::max(level, 0)), 7);
-    ControlMesh const& base = topology.mesh();
-    std::vector<Vec> x(base.positions.begin(), base.positions.end());
-    Topology const* at = &topology;
-    std::unique_ptr<Topology> own;
-    for (int l = 0; l < level; ++l) {
-        std::vector<Vec> finer = catmull_clark_points(*at, x);
-        ControlMesh next = catmull_clark_step(*at);
-        next.creases.clear();
-        next.corners.clear();
-        own.reset(); // reads mesh_
-        mesh_ = std::move(next);
-        x = std::move(finer);
-        own = std::make_unique<Topology>(mesh_);
-        at = own.get();
+    auto const faces = t.ring(v);
+    Ring<Vec> out{x[v], {}, {}};
+    for (HalfEdge h : faces) {
+        out.edge.push_back(x[t.vertex_of(t.next(h))]);
+        out.face.push_back(x[t.vertex_of(t.next(t.next(h)))]);
     }
-    position_.resize(x.size());
-    normal_.resize(x.size());
-    for (std::uint32_t v = 0; v < x.size(); ++v) {
-        if (at->ring(v).empty()) continue;
-        auto const [p, n] = limit(*at, x, v);
-        double const length = glm::length(n);
-        position_[v] = p;
-        normal_[v] = length > 0 ? n / length : Vec(0);
-    }
-    set_pole_normals(find_poles(*at), x);
-
-    // A quad's children are the quads of its corners, in order: the digits of a descendant's number
-    // in base 4 say where it lies.
-    grid_start_.assign(base.faces(), kNone);
-    auto const n = std::size_t(grid() + 1);
-    std::size_t const descendants = std::size_t(1) << (2 * (level - 1));
-    for (std::uint32_t start : base.face_start) first_quad_.push_back(start * descendants);
-    for (std::uint32_t f = 0; f < base.faces(); ++f) {
-        if (base.face(f).size() != 4) continue;
-        grid_start_[f] = grid_.size();
-        grid_.resize(grid_.size() + n * n);
-        for (std::size_t d = 0; d < 4 * descendants; ++d) {
-            std::array<std::array<int, 2>, 4> c{
-                {{0, 0}, {grid(), 0}, {grid(), grid()}, {0, grid()}}};
-            for (int l = level - 1; l >= 0; --l) {
-                std::size_t const i = d >> (2 * l) & 3, after = (i + 1) % 4, before = (i + 3) % 4;
-                auto const middle = [&](std::size_t a, std::size_t b) {
-                    return std::array{(c[a][0] + c[b][0]) / 2, (c[a][1] + c[b][1]) / 2};
-                };
-                c = {c[i], middle(i, after), middle(i, (i + 2) % 4), middle(before, i)};
-            }
-            auto const quad = mesh_.face(first_quad_[f] + d);
-            for (std::size_t k = 0; k < 4; ++k)
-                grid_[grid_start_[f] + std::size_t(c[k][1]) * n + std::size_t(c[k][0])] = quad[k];
-        }
-    }
+    if (t.is_boundary(v)) out.edge.push_back(x[t.vertex_of(t.previous(faces.back()))]);
+    return out;
 }
 
-// As the schemes have them: the mean of the faces around.
-void LimitSurface::set_pole_normals(Poles const& poles, std::vector<glm::dvec3> const& x)
+// Of a side of a vertex. Where the tangents are parallel, as two sharp edges in one line are, the
+// faces decide; and at a corner whose faces turn by more than half a circle they say which side of
+// the plane of its sharp edges is outside.
+Vec side_normal(Ring<Vec> const& ring, VertexRule rule, VertexLimit<Vec>::Side const& side)
+{
+    auto const& [a, b] = side.tangents;
+    Vec const n = cross(a, b);
+    Vec faces(0);
+    for (std::size_t j = side.first_face; j < side.first_face + side.faces; ++j) {
+        std::size_t const f = j % ring.faces();
+        faces += cross(ring.edge[f] - ring.vertex, ring.edge_after(f) - ring.vertex);
+    }
+    if (!(dot(n, n) > 0x1p-32 * dot(a, a) * dot(b, b))) return unit_or_zero(faces);
+    return unit_or_zero(rule == VertexRule::Corner && dot(n, faces) < 0 ? -n : n);
+}
+
+// Poles have the mean of the faces around, as the schemes have it.
+std::vector<Vec> pole_normals(Poles const& poles, std::vector<Vec> const& x)
 {
     std::vector<Vec> normals;
     for (std::size_t k = 0; k < poles.size(); ++k) {
@@ -120,9 +63,104 @@ void LimitSurface::set_pole_normals(Poles const& poles, std::vector<glm::dvec3> 
         double const length = glm::length(area);
         normals.push_back(length > 0 ? area / length : Vec(0, 0, 1));
     }
-    for (std::uint32_t v = 0; v < poles.of_vertex.size(); ++v)
-        if (std::uint32_t const pole = poles.at(v); pole != Poles::kNone)
-            normal_[v] = normals[pole];
+    return normals;
+}
+
+} // namespace
+
+LimitSurface::LimitSurface(Topology const& topology, int level, std::span<Vec const> positions)
+    : level_(level)
+{
+    if (level < 1 || level > 7)
+        throw LimitError("refinement level", std::uint64_t(std::max(level, 0)), 7);
+    ControlMesh const& base = topology.mesh();
+    std::vector<Vec> x(base.positions.begin(), base.positions.end());
+    if (!positions.empty()) x.assign(positions.begin(), positions.end());
+    std::unique_ptr<ControlMesh const> mesh;
+    std::unique_ptr<Topology const> fine;
+    for (int l = 0; l < level; ++l) {
+        Topology const& coarse = fine ? *fine : topology;
+        Sharpness const sharpness(coarse);
+        x = refined_points<CatmullClark, Vec>(coarse, sharpness, x);
+        auto next = std::make_unique<ControlMesh const>(catmull_clark_mesh(coarse, sharpness, x));
+        fine.reset(); // reads mesh
+        mesh = std::move(next);
+        fine = std::make_unique<Topology const>(*mesh);
+    }
+    add_points(*fine, x);
+    std::size_t const descendants = std::size_t(1) << (2 * (level - 1));
+    for (std::uint32_t start : base.face_start) first_quad_.push_back(start * descendants);
+    set_grids(base);
+}
+
+void LimitSurface::add_points(Topology const& t, std::vector<Vec> const& x)
+{
+    ControlMesh const& mesh = t.mesh();
+    Sharpness const sharpness(t);
+    Poles const poles = find_poles(t);
+    std::vector<Vec> const of_pole = pole_normals(poles, x);
+    Limits<CatmullClark> limits;
+    RingSharpness sharp;
+    quads_.resize(mesh.faces());
+    auto const set_corner = [&](HalfEdge h, std::size_t point) {
+        quads_[t.face_of(h)][h - mesh.face_start[t.face_of(h)]] = std::uint32_t(point);
+    };
+    for (std::uint32_t v = 0; v < x.size(); ++v) {
+        auto const ring = t.ring(v);
+        if (ring.empty()) continue;
+        if (sharpness.is_plain(v)) {
+            auto const edge = [&](std::size_t j) -> Vec const& {
+                return x[t.vertex_of(t.next(ring[j]))];
+            };
+            auto const face = [&](std::size_t j) -> Vec const& {
+                return x[t.vertex_of(t.next(t.next(ring[j])))];
+            };
+            auto const [p, a, b] = CatmullClark::limit(int(ring.size()), x[v], edge, face);
+            for (HalfEdge h : ring) set_corner(h, position_.size());
+            position_.push_back(p);
+            normal_.push_back(unit_or_zero(cross(a, b)));
+        } else {
+            sharpness.around(v, sharp);
+            Ring<Vec> const around = ring_of(t, x, v);
+            VertexLimit<Vec> const limit = limits.of(around, sharp);
+            for (auto const& side : limit.sides) {
+                for (std::size_t j = 0; j < side.faces; ++j)
+                    set_corner(ring[(side.first_face + j) % ring.size()], position_.size());
+                position_.push_back(limit.position);
+                normal_.push_back(side_normal(around, limit.rule, side));
+            }
+        }
+        std::uint32_t const pole = poles.at(v);
+        if (pole != Poles::kNone && sharpness.is_untagged(v)) normal_.back() = of_pole[pole];
+    }
+}
+
+void LimitSurface::set_grids(ControlMesh const& base)
+{
+    // A quad's children are the quads of its corners, in order: the digits of a descendant's number
+    // in base 4 say where it lies.
+    grid_start_.assign(base.faces(), kNone);
+    auto const n = std::size_t(grid() + 1);
+    std::size_t const descendants = std::size_t(1) << (2 * (level_ - 1));
+    for (std::uint32_t f = 0; f < base.faces(); ++f) {
+        if (base.face(f).size() != 4) continue;
+        grid_start_[f] = grid_.size();
+        grid_.resize(grid_.size() + n * n);
+        for (std::size_t d = 0; d < 4 * descendants; ++d) {
+            std::array<std::array<int, 2>, 4> c{
+                {{0, 0}, {grid(), 0}, {grid(), grid()}, {0, grid()}}};
+            for (int l = level_ - 1; l >= 0; --l) {
+                std::size_t const i = d >> (2 * l) & 3, after = (i + 1) % 4, before = (i + 3) % 4;
+                auto const middle = [&](std::size_t a, std::size_t b) {
+                    return std::array{(c[a][0] + c[b][0]) / 2, (c[a][1] + c[b][1]) / 2};
+                };
+                c = {c[i], middle(i, after), middle(i, (i + 2) % 4), middle(before, i)};
+            }
+            Quad const& quad = quads_[first_quad_[f] + d];
+            for (std::size_t k = 0; k < 4; ++k)
+                grid_[grid_start_[f] + std::size_t(c[k][1]) * n + std::size_t(c[k][0])] = quad[k];
+        }
+    }
 }
 
 } // namespace tessemu

@@ -1,28 +1,100 @@
-// One Catmull-Clark step: splits every n-gon into n quads.
+// Catmull-Clark subdivision: masks, limits, and the step that splits every n-gon into n quads.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pipeline/mesh/topology.h"
+#include "pipeline/mesh/limit_constants.h"
+#include "pipeline/mesh/subdivision.h"
 
 #include <glm/vec3.hpp>
+
+#include <cmath>
 
 namespace tessemu {
 
 /// F = mean of the face, E = (a + b + F + F')/4, V = (n-2)/n V + mean(d)/n + mean(F)/n (LOOP10
-/// section 3; docs/math/subdivision.md, 1.1); boundary: midpoints and (1,6,1)/8, a vertex with one
-/// face stays unless the boundary rule is EdgeOnly. Tags are carried along, creases to the new
-/// edges, but do not shape the step: creases and corners become one less sharp (10 and above stay:
-/// infinite), holes' quads are holes.
+/// section 3; docs/math/subdivision.md, 1.1); along a boundary or crease midpoints and (1,6,1)/8.
+struct CatmullClark {
+    template <class X> static X face(X const& sum, int sides) { return sum / double(sides); }
+    template <class X> static X edge(X const& a, X const& b, X const& left, X const& right)
+    {
+        return (a + b + left + right) / 4.0;
+    }
+    /// Of an edge at one or two triangles, with OpenSubdiv's smoothtriangles: the faces' points
+    /// weigh 0.47 on a triangle's side and 1/4 on another's, each the mean of both.
+    template <class X>
+    static X smooth_triangle_edge(X const& a, X const& b, X const& left, X const& right,
+                                  int triangles)
+    {
+        double const w = triangles == 2 ? 0.47 : 0.5 * (0.47 + 0.25);
+        return (a + b) * (0.5 * (1 - 2 * w)) + (left + right) * w;
+    }
+    template <class X> static X vertex(int n, X const& v, X const& edges, X const& faces)
+    {
+        double const k = n;
+        return (k - 2) / k * v + edges / (k * k) + faces / (k * k);
+    }
+    template <class X> static X crease_edge(X const& a, X const& b) { return (a + b) / 2.0; }
+    template <class X> static X crease_vertex(X const& a, X const& v, X const& b)
+    {
+        return (a + 6.0 * v + b) / 8.0;
+    }
+
+    /// (n^2 v + 4 sum d + sum x) / (n (n + 5)) and LOOP09 3.3's two tangents; on a mesh of quads.
+    template <class X, class Edge, class Face>
+    static std::array<X, 3> limit(int n, X const& v, Edge const& edge, Face const& face)
+    {
+        double const k = n, sigma = loop09_sigma(n);
+        double const on_edge = 1 + sigma * cos_pi(1, n), on_face = sigma;
+        X p = k * k * v, a = 0.0 * v, b = a;
+        for (int j = 0; j < n; ++j) {
+            X const &d = edge(std::size_t(j)), &x = face(std::size_t(j));
+            p += 4.0 * d + x;
+            a += on_edge * cos_pi(2 * j, n) * d + on_face * cos_pi(2 * j + 1, n) * x;
+            b += on_edge * sin_pi(2 * j, n) * d + on_face * sin_pi(2 * j + 1, n) * x;
+        }
+        p /= k * (k + 5);
+        return {p, a, b};
+    }
+    template <class X> static X crease_limit(X const& a, X const& v, X const& b)
+    {
+        return (a + 4.0 * v + b) / 6.0;
+    }
+    /// The left eigenvector of the largest sine mode, k > 1 (docs/math/subdivision.md, 5.3).
+    template <class X, class Edge, class Face>
+    static X crease_across(int k, X const& v, Edge const& edge, Face const& face)
+    {
+        double const c = cos_pi(1, k), lambda = (5 + c + std::sqrt((c + 9) * (c + 1))) / 16;
+        double edges = 0, faces = 0;
+        X out = 0.0 * v;
+        for (int j = 0; j < k; ++j) {
+            double const on_edge = 4 * (4 * lambda - 1) * sin_pi(j, k),
+                         on_face = sin_pi(j, k) + sin_pi(j + 1, k);
+            if (j > 0) out += on_edge * edge(std::size_t(j));
+            out += on_face * face(std::size_t(j));
+            edges += on_edge, faces += on_face;
+        }
+        double const to_end = (4 * lambda - 1) * sin_pi(1, k) / 4 + sin_pi(1, k) / 4,
+                     to_vertex = 3 * edges / 8 + faces / 4,
+                     determinant = (lambda - 0.5) * (lambda - 0.75) - 0.125;
+        out += (to_end * (lambda - 0.75) + to_vertex / 8) / determinant *
+               (edge(0) + edge(std::size_t(k)));
+        out += (to_vertex * (lambda - 0.5) + to_end) / determinant * v;
+        return out;
+    }
+};
+
+/// One step, with the mesh's creases, corners and boundary rule. Tags go on to the new edges and
+/// vertices, softened; the quads of holes are holes.
 ///
 /// \returns vertex points, then edge points in order of first meeting, then face points; quads face
 ///          by face, each starting at its old vertex. Sums run in double and are rounded once.
 ControlMesh catmull_clark_step(Topology const& topology);
 
-/// The positions of the step alone, not rounded.
+/// The step's faces and tags, without positions but the mesh's own rounded `points`.
 ///
-/// \param x  positions in place of the mesh's own
-std::vector<glm::dvec3> catmull_clark_points(Topology const& topology,
-                                             std::span<glm::dvec3 const> x);
+/// \param points  of the step's vertices
+ControlMesh catmull_clark_mesh(Topology const& topology, Sharpness const& sharpness,
+                               std::span<glm::dvec3 const> points);
 
 } // namespace tessemu

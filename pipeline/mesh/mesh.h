@@ -26,6 +26,12 @@ enum class BoundaryRule {
     EdgeOnly = 2,
 };
 
+/// How sharpness falls along a crease (OpenSubdiv's creasemethod).
+enum class CreaseMethod {
+    Normal,  ///< by one a step
+    Chaikin, ///< by one a step, after a mean with the other creases at the edge's end
+};
+
 /// From this sharpness on an edge or vertex stays as sharp at every step, as in OpenSubdiv.
 inline constexpr float kInfinitelySharp = 10;
 
@@ -55,6 +61,8 @@ struct ControlMesh {
     std::vector<Corner> corners;
     std::vector<std::uint32_t> holes; ///< faces that shape the surface but are not drawn
     BoundaryRule boundary = BoundaryRule::EdgeAndCorner;
+    CreaseMethod crease_method = CreaseMethod::Normal;
+    bool smooth_triangles = false; ///< other weights for the edges of triangles
 
     // What join_vertices and make_manifold have changed: nothing in a mesh as its file has it.
     std::vector<std::uint32_t> file_vertices, file_faces; ///< numbers in the file, from 0

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/mesh/sharpness.h"
+
+#include <algorithm>
+
+namespace tessemu {
+
+namespace {
+
+bool is_finite(float sharpness)
+{
+    return sharpness > 0 && sharpness < kInfinitelySharp;
+}
+
+} // namespace
+
+float softened(float sharpness)
+{
+    return sharpness >= kInfinitelySharp ? sharpness : std::max(0.0f, sharpness - 1);
+}
+
+void SharpEnd::add(float sharpness)
+{
+    if (is_finite(sharpness)) sum += sharpness, ++count;
+}
+
+float SharpEnd::softened_here(float sharpness, CreaseMethod method) const
+{
+    if (method == CreaseMethod::Normal || count < 2 || !is_finite(sharpness))
+        return softened(sharpness);
+    float const others = (sum - sharpness) / float(count - 1);
+    return std::max(0.0f, 0.75f * sharpness + 0.25f * others - 1);
+}
+
+VertexRule RingSharpness::rule() const
+{
+    if (vertex > 0) return VertexRule::Corner;
+    auto const sharp = std::count_if(edge.begin(), edge.end(), [](float s) { return s > 0; });
+    constexpr VertexRule kRules[] = {VertexRule::Smooth, VertexRule::Dart, VertexRule::Crease};
+    return sharp > 2 ? VertexRule::Corner : kRules[sharp];
+}
+
+bool RingSharpness::is_passing() const
+{
+    return is_finite(vertex) || std::any_of(edge.begin(), edge.end(), is_finite);
+}
+
+std::array<std::size_t, 2> RingSharpness::crease() const
+{
+    auto const is_sharp = [](float s) { return s > 0; };
+    auto const first = std::find_if(edge.begin(), edge.end(), is_sharp);
+    auto const last = std::find_if(edge.rbegin(), edge.rend(), is_sharp);
+    return {std::size_t(first - edge.begin()), std::size_t(edge.rend() - last) - 1};
+}
+
+std::array<float, 2> RingSharpness::halves(std::size_t j) const
+{
+    if (method == CreaseMethod::Normal) return {softened(edge[j]), softened(edge[j])};
+    SharpEnd here;
+    for (float s : edge) here.add(s);
+    return {here.softened_here(edge[j], method), far_end[j].softened_here(edge[j], method)};
+}
+
+RingSharpness RingSharpness::after_step() const
+{
+    RingSharpness out;
+    out.method = method;
+    out.open = open;
+    out.vertex = softened(vertex);
+    for (std::size_t j = 0; j < edge.size(); ++j) {
+        auto const [near, far] = halves(j);
+        out.edge.push_back(near);
+        if (far_end.empty()) continue;
+        SharpEnd& end = out.far_end.emplace_back(); // the new edge point, in the middle of a crease
+        end.add(near);
+        end.add(far);
+    }
+    return out;
+}
+
+double passing_weight(RingSharpness const& now, RingSharpness const& after)
+{
+    float sum = 0;
+    int count = 0;
+    auto const add = [&](float before, float left) {
+        if (before > 0 && left <= 0) sum += before, ++count;
+    };
+    add(now.vertex, after.vertex);
+    for (std::size_t j = 0; j < now.edge.size(); ++j) add(now.edge[j], after.edge[j]);
+    return count ? std::min(1.0f, sum / float(count)) : 0.0f;
+}
+
+double crease_weight(float sharpness, std::array<float, 2> halves, CreaseMethod method)
+{
+    if (method == CreaseMethod::Normal) return std::min(1.0f, sharpness);
+    return halves[0] > 0 && halves[1] > 0 ? 1 : sharpness;
+}
+
+Sharpness::Sharpness(Topology const& topology) : topology_(&topology)
+{
+    ControlMesh const& mesh = topology.mesh();
+    if (mesh.creases.empty() && mesh.corners.empty()) return;
+    tagged_.assign(mesh.positions.size(), 0);
+    if (!mesh.creases.empty()) edge_.assign(mesh.face_vertices.size(), 0);
+    for (ControlMesh::Crease const& c : mesh.creases) {
+        HalfEdge const h = topology.find_edge(c.a, c.b);
+        if (h == Topology::kNone || c.sharpness <= 0) continue;
+        HalfEdge const other = topology.twin(h);
+        if (other == Topology::kNone) continue; // as sharp as can be
+        edge_[h] = edge_[other] = c.sharpness;
+        tagged_[c.a] = tagged_[c.b] = 1;
+    }
+    if (!mesh.corners.empty()) vertex_.assign(mesh.positions.size(), 0);
+    for (ControlMesh::Corner const& c : mesh.corners) {
+        vertex_[c.vertex] = c.sharpness;
+        if (c.sharpness > 0) tagged_[c.vertex] = 1;
+    }
+}
+
+float Sharpness::vertex(std::uint32_t v) const
+{
+    if (topology_->is_boundary(v) && topology_->ring(v).size() == 1 &&
+        !topology_->mesh().smooth_corners())
+        return kInfinitelySharp;
+    return vertex_.empty() ? 0 : vertex_[v];
+}
+
+SharpEnd Sharpness::end(std::uint32_t v) const
+{
+    SharpEnd out;
+    for (HalfEdge h : topology_->ring(v)) out.add(edge(h));
+    return out; // a boundary ring's last edge is infinite
+}
+
+void Sharpness::around(std::uint32_t v, RingSharpness& out) const
+{
+    auto const ring = topology_->ring(v);
+    out.method = topology_->mesh().crease_method;
+    out.open = topology_->is_boundary(v);
+    out.vertex = vertex(v);
+    out.edge.clear();
+    for (HalfEdge h : ring) out.edge.push_back(edge(h));
+    if (out.open) out.edge.push_back(kInfinitelySharp);
+    out.far_end.clear();
+    if (out.method == CreaseMethod::Normal) return;
+    for (HalfEdge h : ring) out.far_end.push_back(end(topology_->vertex_of(topology_->next(h))));
+    if (out.open) out.far_end.emplace_back();
+}
+
+std::array<float, 2> Sharpness::halves(HalfEdge h) const
+{
+    float const s = edge(h);
+    CreaseMethod const method = topology_->mesh().crease_method;
+    if (method == CreaseMethod::Normal || !is_finite(s)) return {softened(s), softened(s)};
+    return {end(topology_->vertex_of(h)).softened_here(s, method),
+            end(topology_->vertex_of(topology_->next(h))).softened_here(s, method)};
+}
+
+} // namespace tessemu

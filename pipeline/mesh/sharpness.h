@@ -1,0 +1,100 @@
+// Sharpness of edges and vertices, and the rules that follow from it: OpenSubdiv's semi-sharp
+// creases (docs/math/subdivision.md, 1.7).
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "pipeline/mesh/topology.h"
+
+#include <array>
+
+namespace tessemu {
+
+/// What a vertex follows in a step of subdivision. Smooth and Dart have the same masks, but not the
+/// same limit.
+enum class VertexRule {
+    Smooth, ///< nothing sharp meets here
+    Dart,   ///< one sharp edge ends here
+    Crease, ///< two sharp edges: the curve along them
+    Corner, ///< sharp itself, or three sharp edges and more: it stays where it is
+};
+
+/// The sharpness that is left after a step: one less, and at least 0; infinite stays.
+float softened(float sharpness);
+
+/// What is sharp at one end of an edge, for Chaikin's rule: sharpnesses above 0 that are finite.
+struct SharpEnd {
+    float sum = 0;
+    int count = 0;
+
+    void add(float sharpness);
+    /// Of an edge of `sharpness` that ends here, the sharpness of the half at this end after a
+    /// step: softened, with Chaikin's rule after 3/4 of it and 1/4 of the mean of the others.
+    float softened_here(float sharpness, CreaseMethod method) const;
+};
+
+/// The edges around a vertex, in the order of Topology::ring.
+struct RingSharpness {
+    CreaseMethod method = CreaseMethod::Normal;
+    bool open = false;       ///< on the boundary: edge[0] and edge.back() are infinitely sharp
+    float vertex = 0;        ///< the vertex's own
+    std::vector<float> edge; ///< as many as faces, and one more where it is open
+    std::vector<SharpEnd> far_end; ///< of each edge, with it; empty unless Chaikin's rule needs it
+
+    VertexRule rule() const;
+    /// A finite sharpness is left: the surface is smoother here than the rule says.
+    bool is_passing() const;
+    /// The first sharp edge and the last: a crease's two.
+    std::array<std::size_t, 2> crease() const;
+    /// What is left after a step, on the halves of the edges that lie at the vertex.
+    RingSharpness after_step() const;
+    /// Of the halves of an edge after a step: at the vertex, and at the far end.
+    std::array<float, 2> halves(std::size_t j) const;
+};
+
+/// How much of the rule of `now` a vertex's new point has where that of `after` is another: the
+/// mean of the sharpnesses that end in this step, at most 1.
+double passing_weight(RingSharpness const& now, RingSharpness const& after);
+
+/// How much of the midpoint an edge's new point has, of `sharpness` above 0 and with such halves
+/// after the step; the rest is the smooth edge point. With Chaikin's rule more than all, up to 4/3,
+/// where a half ends that was sharper than 1: OpenSubdiv's refinement does so.
+double crease_weight(float sharpness, std::array<float, 2> halves, CreaseMethod method);
+
+/// A mesh's tags by edge and vertex. Boundary edges are infinitely sharp, and so is a vertex with
+/// one face unless the boundary rule smooths it.
+class Sharpness {
+public:
+    /// \param topology  outlives this. \cost  linear in the tags and, where there are some, in the
+    ///                  corners of faces
+    explicit Sharpness(Topology const& topology);
+
+    float edge(HalfEdge h) const
+    {
+        return topology_->twin(h) == Topology::kNone ? kInfinitelySharp
+               : edge_.empty()                       ? 0
+                                                     : edge_[h];
+    }
+    float vertex(std::uint32_t v) const;
+    /// Inside the mesh, and no tag on it or on an edge at it.
+    bool is_plain(std::uint32_t v) const
+    {
+        return !topology_->is_boundary(v) && (tagged_.empty() || !tagged_[v]);
+    }
+    /// No tag on it or on an edge at it, but for the boundary.
+    bool is_untagged(std::uint32_t v) const { return tagged_.empty() || !tagged_[v]; }
+    /// \param out  reused from call to call
+    void around(std::uint32_t v, RingSharpness& out) const;
+    /// Of the halves of an edge after a step: at the half-edge's vertex, and at the next.
+    std::array<float, 2> halves(HalfEdge h) const;
+
+private:
+    SharpEnd end(std::uint32_t v) const;
+
+    Topology const* topology_;
+    std::vector<float> edge_;   ///< by half-edge; empty: no creases
+    std::vector<float> vertex_; ///< empty: no corners
+    std::vector<char> tagged_;  ///< by vertex; empty: no tags
+};
+
+} // namespace tessemu

@@ -1,0 +1,413 @@
+// The limit surface of tagged cages: against samples made by OpenSubdiv, against itself at other
+// levels, and against surfaces known in closed form.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/limit_surface.h"
+#include "io/model.h"
+#include "pipeline/mesh/catmull_clark.h"
+#include "pipeline/mesh/limit.h"
+#include "tests/support/files.h"
+#include "tests/support/gzip.h"
+#include "tests/support/random_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <sstream>
+
+namespace tessemu {
+namespace {
+
+using Vec = glm::dvec3;
+
+struct Sample {
+    std::uint32_t face;
+    int sub;
+    double u, v;
+    Vec position, normal;
+    std::string line;
+};
+
+struct Golden {
+    double diagonal = 0;
+    std::vector<Sample> samples;
+
+    explicit Golden(std::filesystem::path const& path)
+    {
+        std::istringstream in(test::read_gzip(path));
+        std::string line;
+        std::getline(in, line);
+        diagonal = std::stod(line.substr(line.find("bbox_diag=") + 10));
+        std::getline(in, line);
+        while (std::getline(in, line)) {
+            double c[10];
+            std::istringstream row(line);
+            for (double& x : c) {
+                row >> x;
+                row.ignore();
+            }
+            samples.push_back({std::uint32_t(c[0]),
+                               int(c[1]),
+                               c[2],
+                               c[3],
+                               {c[4], c[5], c[6]},
+                               {c[7], c[8], c[9]},
+                               line});
+        }
+    }
+};
+
+// The file's positions in double: the reader's are floats.
+std::vector<Vec> exact_positions(std::filesystem::path const& obj)
+{
+    std::vector<Vec> out;
+    std::istringstream in(test::read_text(obj));
+    for (std::string line, word; std::getline(in, line);) {
+        std::istringstream words(line);
+        Vec p;
+        if (words >> word && word == "v" && words >> p.x >> p.y >> p.z) out.push_back(p);
+    }
+    return out;
+}
+
+// The boundary rule of the samples, where the file names none, is edge only.
+ControlMesh mesh_of_samples(std::filesystem::path const& obj)
+{
+    ControlMesh mesh = load_model(obj.string()).mesh;
+    if (test::read_text(obj).find("t interpolateboundary") == std::string::npos)
+        mesh.boundary = BoundaryRule::EdgeOnly;
+    return mesh;
+}
+
+// The points of a base face's sub-quads, by (sub, i, j) on a grid of `cells` a side. A quad's four
+// children make one sub-quad.
+std::map<std::array<int, 3>, std::uint32_t>
+points_of_face(LimitSurface const& limit, ControlMesh const& base, std::uint32_t face, int& cells)
+{
+    using Corners = std::array<std::array<int, 2>, 4>;
+    int const sides = int(base.face(face).size());
+    int const digits = sides == 4 ? limit.level() : limit.level() - 1;
+    cells = 1 << digits;
+    std::map<std::array<int, 3>, std::uint32_t> out;
+    std::size_t const of_sub = std::size_t(1) << (2 * digits);
+    for (std::size_t q = limit.first_quad(face); q < limit.first_quad(face + 1); ++q) {
+        std::size_t const number = q - limit.first_quad(face);
+        Corners c{{{0, 0}, {cells, 0}, {cells, cells}, {0, cells}}};
+        for (int d = digits - 1; d >= 0; --d) {
+            std::size_t const i = number >> (2 * d) & 3;
+            auto const middle = [&](std::size_t a, std::size_t b) {
+                return std::array{(c[a % 4][0] + c[b % 4][0]) / 2, (c[a % 4][1] + c[b % 4][1]) / 2};
+            };
+            c = {c[i], middle(i, i + 1), middle(i, i + 2), middle(i, i + 3)};
+        }
+        for (std::size_t k = 0; k < 4; ++k)
+            out[{int(number / of_sub), c[k][0], c[k][1]}] = limit.quads()[q][k];
+    }
+    return out;
+}
+
+struct Agreement {
+    std::size_t compared = 0;
+    double position = 0; ///< worst distance in diagonals
+    double normal = 0;   ///< worst |n - n'|
+};
+
+Agreement compare_with_samples(std::filesystem::path const& obj, std::filesystem::path const& csv)
+{
+    ControlMesh const mesh = mesh_of_samples(obj);
+    std::vector<Vec> const positions = exact_positions(obj);
+    EXPECT_EQ(positions.size(), mesh.positions.size());
+    Topology const topology(mesh);
+    bool quads = true;
+    for (std::size_t f = 0; f < mesh.faces(); ++f) quads = quads && mesh.face(f).size() == 4;
+    LimitSurface const limit(topology, quads ? 3 : 4, positions); // samples at 1/8
+    Golden const golden(csv);
+    Agreement out;
+    std::uint32_t face = Topology::kNone;
+    std::map<std::array<int, 3>, std::uint32_t> points;
+    int cells = 0;
+    for (Sample const& s : golden.samples) {
+        if (s.face != face) points = points_of_face(limit, mesh, face = s.face, cells);
+        auto const at =
+            points.find({s.sub, int(std::round(s.u * cells)), int(std::round(s.v * cells))});
+        if (at == points.end()) {
+            ADD_FAILURE() << "no point for " << s.line;
+            return out;
+        }
+        out.position =
+            std::max(out.position,
+                     glm::length(limit.positions()[at->second] - s.position) / golden.diagonal);
+        if (s.normal != Vec(0))
+            out.normal = std::max(out.normal, glm::length(limit.normals()[at->second] - s.normal));
+        ++out.compared;
+    }
+    EXPECT_EQ(out.compared, golden.samples.size());
+    return out;
+}
+
+// Samples are printed with 10 digits, in models of up to 10 diagonals from their origin: 5e-9. The
+// file with an infinitely sharp dart is off by 1e-5 itself, for OpenSubdiv takes a smooth vertex's
+// mask there. Normals have 8 decimals, and at extraordinary vertices those of OpenSubdiv's patches
+// are off by up to 6e-6 (see limit_surface_test.cpp).
+void expect_agreement(std::string const& name, Agreement const& a)
+{
+    EXPECT_GT(a.compared, 100u);
+    EXPECT_LE(a.position, name == "catmark_inf_crease0" ? 1e-5 : 5e-9) << name;
+    EXPECT_LE(a.normal, 6e-6) << name;
+    testing::Test::RecordProperty("samples", std::to_string(a.compared));
+    testing::Test::RecordProperty("worst_of_the_diagonal",
+                                  std::to_string(a.position * 1e9) + "e-9");
+    testing::Test::RecordProperty("worst_normal", std::to_string(a.normal * 1e9) + "e-9");
+}
+
+class TaggedCage : public testing::TestWithParam<std::string> {};
+
+TEST_P(TaggedCage, LiesOnOpenSubdivsLimitSurface)
+{
+    expect_agreement(GetParam(),
+                     compare_with_samples(test::golden("limit/" + GetParam() + ".obj"),
+                                          test::golden("limit/" + GetParam() + ".dyadic.csv.gz")));
+}
+INSTANTIATE_TEST_SUITE_P(Small, TaggedCage,
+                         testing::Values("catmark_cube_corner0", "catmark_cube_creases2",
+                                         "catmark_dart_edgeonly", "catmark_inf_crease0",
+                                         "catmark_pyramid_creases0", "catmark_tent_creases0"));
+
+class SharedTaggedCage : public testing::TestWithParam<std::string> {};
+
+TEST_P(SharedTaggedCage, LiesOnOpenSubdivsLimitSurface)
+{
+    std::string const model = "models/" + GetParam() + ".obj",
+                      golden = "golden/limit/" + GetParam() + ".dyadic.csv.gz";
+    TESSEMU_NEEDS_SHARED(model);
+    TESSEMU_NEEDS_SHARED(golden);
+    expect_agreement(GetParam(), compare_with_samples(test::shared(model), test::shared(golden)));
+}
+INSTANTIATE_TEST_SUITE_P(Shared, SharedTaggedCage,
+                         testing::Values("catmark_cube_corner4", "catmark_edgecorner",
+                                         "catmark_edgeonly", "catmark_hole_test1", "catmark_pawn",
+                                         "catmark_rook", "catmark_smoothtris0",
+                                         "catmark_torus_creases0", "spot_control", "two_hole"));
+
+// Tags of every kind at random: sharpness below, at and above whole steps, and infinite.
+ControlMesh with_random_tags(ControlMesh mesh, std::uint32_t seed)
+{
+    std::mt19937 random(seed);
+    auto const sharpness = [&] {
+        switch (random() % 5) {
+        case 0:
+            return 10.0f;
+        case 1:
+            return float(1 + random() % 3);
+        default:
+            return float(random() % 4096) / 1024;
+        }
+    };
+    Topology const topology(mesh);
+    for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
+        HalfEdge const twin = topology.twin(h);
+        if (twin != Topology::kNone && twin > h && random() % 4 == 0)
+            mesh.creases.push_back(
+                {topology.vertex_of(h), topology.vertex_of(topology.next(h)), sharpness()});
+    }
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v)
+        if (random() % 12 == 0) mesh.corners.push_back({v, sharpness()});
+    mesh.boundary = random() % 2 ? BoundaryRule::EdgeOnly : BoundaryRule::EdgeAndCorner;
+    mesh.crease_method = random() % 2 ? CreaseMethod::Chaikin : CreaseMethod::Normal;
+    mesh.smooth_triangles = random() % 2;
+    return mesh;
+}
+
+double reach_of(ControlMesh const& mesh)
+{
+    double out = 0;
+    for (glm::vec3 const& p : mesh.positions) out = std::max(out, glm::length(Vec(p)));
+    return out;
+}
+
+// A point of the limit surface is the same however far the mesh was refined before the masks: what
+// is still sharp goes on in the vertex's own ring. A refined point is a mean of at most 2 n + 1
+// others, n up to 40 here, so a step adds at most as many roundings; at most 10 steps follow.
+TEST(TaggedLimit, DoesNotDependOnTheLevel)
+{
+    std::size_t compared = 0, normals = 0;
+    for (std::uint32_t seed = 1; seed <= 24; ++seed) {
+        ControlMesh const mesh = with_random_tags(test::random_mesh(seed), seed);
+        Topology const topology(mesh);
+        LimitSurface const coarse(topology, 2), fine(topology, 4);
+        double const reach = reach_of(mesh);
+        for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
+            if (!coarse.has_grid(f)) continue;
+            for (int i = 0; i <= 4; ++i)
+                for (int j = 0; j <= 4; ++j) {
+                    std::uint32_t const a = coarse.vertex(f, i, j),
+                                        b = fine.vertex(f, 4 * i, 4 * j);
+                    double const apart = glm::length(coarse.positions()[a] - fine.positions()[b]);
+                    EXPECT_LE(apart, 14 * 81 * 0x1p-53 * reach) << seed << " " << f;
+                    ++compared;
+                    // Normals turn where the surface is nearly singular; most do not.
+                    normals += glm::length(coarse.normals()[a] - fine.normals()[b]) < 1e-6;
+                }
+        }
+    }
+    EXPECT_GT(compared, 10000u);
+    EXPECT_GT(double(normals), 0.98 * double(compared));
+    RecordProperty("points", std::to_string(compared));
+    RecordProperty("equal_normals", std::to_string(normals));
+}
+
+// A cube all of whose edges are sharp is itself. Its corners lie a quarter of the diagonal from
+// those of the smooth limit: (1 - 1/2) of the way to the centre, half a diagonal off, where
+// (n^2 v + 4 sum d + sum x)/(n(n+5)) of n = 3 is (9 + 4 + (-1))/24 = 1/2 of v. A tangent across an
+// edge sums 6 terms that weigh 16 in all, and has the length 6 cells of 1/2: normals have 32 units.
+TEST(TaggedLimit, ASharpCubeIsACubeAndTheSmoothOneAQuarterOfTheDiagonalOff)
+{
+    ControlMesh cube;
+    for (int k = 0; k < 8; ++k)
+        cube.positions.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+    for (std::vector<std::uint32_t> const& face : std::vector<std::vector<std::uint32_t>>{
+             {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
+        cube.add_face(face);
+    Topology const topology(cube);
+    LimitSurface const smooth(topology, 2);
+    for (HalfEdge h = 0; h < cube.face_vertices.size(); ++h)
+        cube.creases.push_back(
+            {topology.vertex_of(h), topology.vertex_of(topology.next(h)), kInfinitelySharp});
+    LimitSurface const sharp(topology, 2);
+    double diagonal = 2 * reach_of(cube);
+    for (std::uint32_t f = 0; f < cube.faces(); ++f) {
+        auto const v = cube.face(f);
+        Vec const a(cube.positions[v[0]]), b(cube.positions[v[1]]), d(cube.positions[v[3]]);
+        Vec const n = glm::normalize(cross(b - a, d - a));
+        for (int i = 0; i <= 4; ++i)
+            for (int j = 0; j <= 4; ++j) {
+                std::uint32_t const p = sharp.vertex(f, i, j);
+                EXPECT_EQ(sharp.positions()[p], a + (b - a) * (i / 4.0) + (d - a) * (j / 4.0));
+                EXPECT_LE(glm::length(sharp.normals()[p] - n), 32 * 0x1p-53);
+            }
+        EXPECT_EQ(glm::length(sharp.positions()[sharp.vertex(f, 0, 0)] -
+                              smooth.positions()[smooth.vertex(f, 0, 0)]) /
+                      diagonal,
+                  0.25);
+    }
+}
+
+// A flat sheet bent by nothing but tags stays flat, and its normals with it, round a sharp corner
+// of three faces too.
+TEST(TaggedLimit, AFlatSheetHasOneNormalWhateverIsSharp)
+{
+    ControlMesh sheet;
+    for (int y = 0; y < 5; ++y)
+        for (int x = 0; x < 5; ++x) sheet.positions.emplace_back(float(x), float(y), 0.0f);
+    for (std::uint32_t y = 0; y < 4; ++y)
+        for (std::uint32_t x = 0; x < 4; ++x) {
+            if (x > 1 && y > 1) continue; // an L: its inner corner, 12, has three faces
+            std::uint32_t const a = 5 * y + x;
+            sheet.add_face(std::vector{a, a + 1, a + 6, a + 5});
+        }
+    sheet.corners.push_back({12, kInfinitelySharp});
+    std::size_t compared = 0;
+    for (std::uint32_t seed = 0; seed < 8; ++seed) {
+        ControlMesh const mesh = seed ? with_random_tags(sheet, seed) : sheet;
+        Topology const topology(mesh);
+        LimitSurface const limit(topology, 3);
+        for (std::size_t p = 0; p < limit.positions().size(); ++p, ++compared) {
+            EXPECT_EQ(limit.positions()[p].z, 0);
+            EXPECT_EQ(limit.normals()[p], Vec(0, 0, 1))
+                << seed << " at " << limit.positions()[p].x << " " << limit.positions()[p].y;
+        }
+    }
+    EXPECT_GT(compared, 5000u);
+}
+
+// Iterated refinement of a ring against the masks: the limit is what it tends to, and the tangents
+// are what its differences tend to, up to length.
+TEST(TaggedLimit, MasksAreWhatTheRingTendsTo)
+{
+    std::mt19937 random(7);
+    auto const point = [&] {
+        auto const c = [&] { return double(random() % 1024) / 1024; };
+        double const x = c(), y = c();
+        return Vec(x, y, c());
+    };
+    for (std::size_t n = 3; n <= 12; ++n) {
+        Ring<Vec> ring{point(), {}, {}};
+        for (std::size_t j = 0; j < n; ++j) {
+            ring.edge.push_back(point());
+            ring.face.push_back(point());
+        }
+        RingSharpness dart;
+        dart.edge.assign(n, 0);
+        dart.edge[1] = kInfinitelySharp;
+        Limits<CatmullClark> limits;
+        VertexLimit<Vec> const limit = limits.of(ring, dart);
+        ASSERT_EQ(limit.sides.size(), 1u);
+        Vec const normal =
+            glm::normalize(cross(limit.sides[0].tangents[0], limit.sides[0].tangents[1]));
+        Ring<Vec> fine = ring;
+        for (int step = 0; step < 30; ++step) fine = refined_ring<CatmullClark>(fine, dart);
+        // 30 steps leave at most 0.61^30 = 4e-7 of the differences at n = 12.
+        EXPECT_LE(glm::length(fine.vertex - limit.position), 1e-6) << n;
+        EXPECT_EQ(limit.rule, VertexRule::Dart);
+        // The masks do not see the steps: a refined ring has the same limit and the same plane.
+        Ring<Vec> once = refined_ring<CatmullClark>(ring, dart);
+        VertexLimit<Vec> const again = limits.of(once, dart);
+        EXPECT_LE(glm::length(again.position - limit.position), 1e-13) << n;
+        Vec const same =
+            glm::normalize(cross(again.sides[0].tangents[0], again.sides[0].tangents[1]));
+        EXPECT_LE(glm::length(same - normal), 1e-11) << n;
+    }
+}
+
+// Along a crease of two faces a side the surface is a bicubic on each, so its cross tangent is that
+// of a B-spline: (-1 -4 -1, 4 of the row inside, 1 beside it)/6; k = 2 in the general mask.
+TEST(TaggedLimit, ARegularCreaseHasTheBSplinesTangent)
+{
+    for (int at = 0; at < 6; ++at) {
+        double weights[6] = {}; // e_0 e_1 e_2 f_0 f_1 V
+        weights[at] = 1;
+        auto const edge = [&](std::size_t j) -> double const& { return weights[j]; };
+        auto const face = [&](std::size_t j) -> double const& { return weights[3 + j]; };
+        double const expected[6] = {-1, 4, -1, 1, 1, -4};
+        EXPECT_NEAR(CatmullClark::crease_across(2, weights[5], edge, face), expected[at],
+                    8 * 0x1p-52);
+    }
+}
+
+// With k faces the mask is a left eigenvector of the sector's refinement: a step multiplies it by
+// lambda = (5 + c + sqrt((c + 9)(c + 1)))/16, c = cos(pi/k).
+TEST(TaggedLimit, TheTangentAcrossAnyCreaseIsAnEigenvectorOfTheStep)
+{
+    for (int k = 2; k <= 12; ++k) {
+        std::size_t const n = std::size_t(k);
+        RingSharpness open;
+        open.open = true;
+        open.edge.assign(n + 1, 0);
+        open.edge.front() = open.edge.back() = kInfinitelySharp;
+        double const c = cos_pi(1, k), lambda = (5 + c + std::sqrt((c + 9) * (c + 1))) / 16;
+        auto const across = [&](Ring<double> const& r) {
+            auto const edge = [&](std::size_t j) -> double const& { return r.edge[j]; };
+            auto const face = [&](std::size_t j) -> double const& { return r.face[j]; };
+            return CatmullClark::crease_across(k, r.vertex, edge, face);
+        };
+        for (std::size_t at = 0; at < 2 * n + 2; ++at) {
+            Ring<double> ring{at == 0 ? 1.0 : 0.0, std::vector<double>(n + 1, 0),
+                              std::vector<double>(n, 0)};
+            if (at > n + 1)
+                ring.face[at - n - 2] = 1;
+            else if (at > 0)
+                ring.edge[at - 1] = 1;
+            double const before = across(ring),
+                         after = across(refined_ring<CatmullClark>(ring, open));
+            EXPECT_NEAR(after, lambda * before, 1e-13) << k << " " << at; // weights up to 40
+        }
+    }
+}
+
+} // namespace
+} // namespace tessemu
