@@ -96,6 +96,18 @@ bool ObjTags::has_sharpness(Tag const& t, std::size_t ints)
     return false;
 }
 
+std::optional<bool> ObjTags::one_of(Tag const& t, std::string_view first, std::string_view second)
+{
+    if (t.strings.size() == 1 && (t.strings[0] == first || t.strings[0] == second))
+        return t.strings[0] == second;
+    note_tag(t.line, t.name,
+             t.strings.empty()
+                 ? fmt::format("tag '{}' has no word, '{}' or '{}': skipped", t.name, first, second)
+                 : fmt::format("tag '{}' is '{}', known are '{}' and '{}': skipped", t.name,
+                               shown(t.strings[0]), first, second));
+    return {};
+}
+
 void ObjTags::apply(Tag const& t, std::size_t vertices)
 {
     std::size_t const faces = mesh_.faces();
@@ -133,10 +145,12 @@ void ObjTags::apply(Tag const& t, std::size_t vertices)
         if (t.ints.size() != 1)
             return left_out("tag 'interpolateboundary' has not one integer: skipped");
         if (in_range(t, t.ints[0], 3, "rule")) mesh_.boundary = BoundaryRule(t.ints[0]);
-    } else if (t.name == "creasemethod" || t.name == "smoothtriangles") {
-        std::string_view const honoured = t.name == "creasemethod" ? "normal" : "catmark";
-        if (t.strings != std::vector{honoured})
-            left_out(fmt::format("tag '{}' is not honoured but for '{}'", t.name, honoured));
+    } else if (t.name == "creasemethod") {
+        if (auto const is_second = one_of(t, "normal", "chaikin"))
+            mesh_.crease_method = *is_second ? CreaseMethod::Chaikin : CreaseMethod::Normal;
+    } else if (t.name == "smoothtriangles") {
+        if (auto const is_second = one_of(t, "catmark", "smooth"))
+            mesh_.smooth_triangles = *is_second;
     } else if (t.name == "facevaryinginterpolateboundary") {
         if (t.ints != std::vector<std::int64_t>{kLinear})
             left_out(fmt::format("tag '{}' is not honoured: texture coordinates are linear in "

@@ -6,11 +6,12 @@
 #include "io/obj_notes.h"
 #include "pipeline/mesh/mesh.h"
 
+#include <optional>
 #include <string_view>
 
 namespace tessemu {
 
-/// Creases, corners, holes and the boundary rule. What is wrong or not honoured is noted, and
+/// Creases, corners, holes, and the rules of boundary, creases and triangles. What is wrong or not honoured is noted, and
 /// skipped.
 class ObjTags {
 public:
@@ -39,6 +40,8 @@ private:
     bool in_range(Tag const& t, std::int64_t value, std::size_t limit, char const* what);
     float sharpness(Tag const& t, std::size_t item, std::size_t ints) const;
     bool has_sharpness(Tag const& t, std::size_t ints);
+    // Whether the tag's only word is the second; none, and a note, if it is neither.
+    std::optional<bool> one_of(Tag const& t, std::string_view first, std::string_view second);
     bool is_edge(std::uint32_t a, std::uint32_t b);
 
     ControlMesh& mesh_;

@@ -20,6 +20,7 @@ ControlMesh catmull_clark_mesh(Topology const& topology, Sharpness const& sharpn
     out.name = mesh.name;
     out.boundary = mesh.boundary;
     out.crease_method = mesh.crease_method;
+    out.smooth_triangles = mesh.smooth_triangles;
     out.positions.assign(points.begin(), points.end());
     auto edges = std::uint32_t(mesh.positions.size());
     std::vector<std::uint32_t> edge_point(mesh.face_vertices.size());

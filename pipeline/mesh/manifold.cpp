@@ -148,6 +148,8 @@ ManifoldMesh make_manifold(ControlMesh mesh)
     ControlMesh& m = out.mesh;
     m.name = mesh.name;
     m.boundary = mesh.boundary;
+    m.crease_method = mesh.crease_method;
+    m.smooth_triangles = mesh.smooth_triangles;
     auto const add_vertex = [&](std::uint32_t v, HalfEdge fan) {
         of_fan[fan] = std::uint32_t(m.positions.size());
         m.positions.push_back(mesh.positions[v]);

@@ -40,15 +40,21 @@ Scheme const& find_scheme(std::string_view name)
     throw Error("scheme '" + std::string(name) + "' is not known; there is " + known);
 }
 
+namespace {
+
+std::string in_words_of_steps(int steps)
+{
+    return std::to_string(steps) + (steps == 1 ? " step" : " steps") + " of subdivision";
+}
+
+} // namespace
+
 std::string in_words(MeshRequirements const& t)
 {
     std::string s = t.quads && t.triangles ? "quads and triangles"
                     : t.quads              ? "quads"
                                            : "triangles";
-    auto const after = [](int steps) {
-        return " after " + std::to_string(steps) + (steps == 1 ? " step" : " steps") +
-               " of subdivision";
-    };
+    auto const after = [](int steps) { return " after " + in_words_of_steps(steps); };
     if (t.steps)
         s += "," + after(t.steps);
     else if (t.quads && t.steps_with_polygons)
@@ -210,21 +216,40 @@ void refuse(SchemeInfo const& info, MeshFacts const& m, int subdivide)
                                         std::to_string(m.largest_face + 1) + help);
 }
 
-void warn_of_tags(SchemeInfo const& info, Topology const& topology, std::vector<std::string>& out)
+// What the steps of subdivision leave to a scheme that has no use for it.
+void warn_of_tags(SchemeInfo const& info, RefinedMesh const& refined, std::vector<std::string>& out)
 {
-    ControlMesh const& mesh = topology.mesh();
+    Topology const& topology = refined.base_topology();
+    ControlMesh const& mesh = refined.base();
+    std::string const after =
+        refined.steps() ? " after " + in_words_of_steps(refined.steps()) : std::string();
+    auto const is_left = [&](float sharpness) {
+        return sharpness >= kInfinitelySharp || mesh.crease_method != CreaseMethod::Normal ||
+               sharpness > float(refined.steps());
+    };
     // A crease on the boundary is sharp by nature.
     auto const creases =
         std::count_if(mesh.creases.begin(), mesh.creases.end(), [&](ControlMesh::Crease const& c) {
             HalfEdge const h = topology.find_edge(c.a, c.b);
-            return h != Topology::kNone && topology.twin(h) != Topology::kNone;
+            return is_left(c.sharpness) && h != Topology::kNone &&
+                   topology.twin(h) != Topology::kNone;
         });
-    if (creases && !info.takes.creases)
-        out.push_back(std::to_string(creases) +
-                      " crease edges are drawn smooth: the scheme knows no creases");
-    if (!mesh.corners.empty() && !info.takes.corners)
-        out.push_back(std::to_string(mesh.corners.size()) +
-                      " sharp corners are drawn smooth: the scheme knows no corners");
+    if (creases && !refined.mesh().creases.empty() && !info.takes.creases)
+        out.push_back(std::to_string(creases) + " crease edges are drawn smooth" + after +
+                      ": the scheme knows no creases");
+    auto const corners =
+        std::count_if(mesh.corners.begin(), mesh.corners.end(),
+                      [&](ControlMesh::Corner const& c) { return is_left(c.sharpness); });
+    if (corners && !refined.mesh().corners.empty() && !info.takes.corners)
+        out.push_back(std::to_string(corners) + " sharp corners are drawn smooth" + after +
+                      ": the scheme knows no corners");
+    ControlMesh const& drawn = refined.mesh();
+    bool triangles = false;
+    for (std::size_t f = 0; f < drawn.faces() && !triangles; ++f)
+        triangles = drawn.face(f).size() == 3;
+    if (drawn.smooth_triangles && triangles)
+        out.push_back("triangles are drawn without the weights of smoothtriangles: a step of "
+                      "subdivision has them");
 }
 
 void warn(SchemeOnMesh& out, BuildOptions const& options, std::vector<std::string> const& warnings)
@@ -299,7 +324,7 @@ SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions c
     for (std::string const& w : out.patches->warnings()) more.push_back(w);
     if (out.patches->patch_counts().empty())
         more.push_back("no face is drawn: all are holes, or hidden at the boundary");
-    warn_of_tags(info, out.mesh->base_topology(), more);
+    warn_of_tags(info, *out.mesh, more);
     warn(out, options, more);
     return out;
 }

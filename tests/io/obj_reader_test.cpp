@@ -398,8 +398,10 @@ TEST(ObjReader, WarnsOfEachKindOfLineThatIsLost)
               "more)"},
              {"t hole 1/0/0 1 2\n",
               "tag 'hole' announces 1/0/0 values and has 2: the rest is left out"},
-             {"t creasemethod 0/0/1 chaikin\n",
-              "tag 'creasemethod' is not honoured but for 'normal'"},
+             {"t creasemethod 0/0/1 chalkin\n",
+              "tag 'creasemethod' is 'chalkin', known are 'normal' and 'chaikin': skipped"},
+             {"t smoothtriangles 1/0/0 2\n",
+              "tag 'smoothtriangles' has no word, 'catmark' or 'smooth': skipped"},
              {"t facevaryinginterpolateboundary 1/0/0 1\n",
               "tag 'facevaryinginterpolateboundary' is not honoured: texture coordinates are "
               "linear "
@@ -425,6 +427,24 @@ TEST(ObjReader, WarningsStandBeforeTheErrorThatFollows)
                  FormatError);
     ASSERT_EQ(told.size(), 1u);
     EXPECT_TRUE(told[0].starts_with("a.obj:1: "));
+}
+
+TEST(ObjReader, CreaseMethodAndSmoothTrianglesAreWords)
+{
+    ControlMesh const plain = read_obj(kCube, "a").mesh;
+    EXPECT_EQ(plain.crease_method, CreaseMethod::Normal);
+    EXPECT_FALSE(plain.smooth_triangles);
+    ObjFile const tagged =
+        read_obj(kCube + "t creasemethod 0/0/1 chaikin\nt smoothtriangles 0/0/1 smooth\n", "a");
+    EXPECT_EQ(tagged.mesh.crease_method, CreaseMethod::Chaikin);
+    EXPECT_TRUE(tagged.mesh.smooth_triangles);
+    EXPECT_TRUE(tagged.warnings.empty());
+    ObjFile const last =
+        read_obj(kCube + "t creasemethod 0/0/1 chaikin\nt creasemethod 0/0/1 normal\n"
+                         "t smoothtriangles 0/0/1 smooth\nt smoothtriangles 0/0/1 catmark\n",
+                 "a");
+    EXPECT_EQ(last.mesh.crease_method, CreaseMethod::Normal);
+    EXPECT_FALSE(last.mesh.smooth_triangles);
 }
 
 // As regression/common/far_utils.h has it.
