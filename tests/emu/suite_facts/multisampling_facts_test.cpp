@@ -117,8 +117,8 @@ TEST(Multisampling, S49ResolveIsTheMeanInLinearSpace)
     } const table[] = {
         {{0, 1, 0, 1}, Format::R8G8B8A8_UNORM, 0xff80ff80, 0xff80ff80},
         {{0, 1, 0, 1}, Format::R8G8B8A8_UNORM_SRGB, 0xffbcffbc, 0xffbcffbc},
-        // Red is 159.5 codes, and a rounding below it in float.
-        {{0.25f, 0.5f, 0.75f, 1}, Format::R8G8B8A8_UNORM, 0xffdfc09f, 0xffdfc0a0},
+        // Red and green are 159.5 and 191.5 codes, and a rounding less in float.
+        {{0.25f, 0.5f, 0.75f, 1}, Format::R8G8B8A8_UNORM, 0xffdfbf9f, 0xffdfc0a0},
         {{0.25f, 0.5f, 0.75f, 1}, Format::R8G8B8A8_UNORM_SRGB, 0xfff1e1cf, 0xfff1e1cf}};
     for (auto const& row : table) {
         Scene s(8, 8, 4, row.format);
