@@ -244,7 +244,7 @@ TEST(Texture, R127R148ImplicitDerivativesChooseTheLevelAndTexelsAreCounted)
     }
 }
 
-TEST(Texture, MipLevelsAreMeans)
+TEST(Texture, G17MipLevelsAreMeans)
 {
     auto const [texels, levels] = make_mip_levels(numbered(4, 2, 1, 1), 4, 2);
     EXPECT_EQ(levels, 3);

@@ -41,7 +41,7 @@ TEST(GeometryShader, S25APointBecomesASquareAroundIt)
         EXPECT_EQ(s.at(x, y), 0.0f) << x << "," << y;
 }
 
-// Each triangle into viewports 0 and 1; the number goes along as an attribute, plus one.
+// Each triangle into viewports 0 and 1.
 struct ToBothViewports {
     static constexpr PrimitiveTopology kInput = PrimitiveTopology::TriangleList;
     static constexpr GeometryOutput kOutput = GeometryOutput::TriangleStrip;
@@ -54,12 +54,18 @@ struct ToBothViewports {
     {
         for (int viewport = 0; viewport < 2; ++viewport) {
             for (std::size_t k = 0; k < 3; ++k) {
-                SceneVertex<T> corner = v[k];
-                corner.value.x = T(float(viewport + 1));
-                out.append(corner, {in.primitive_id, int_of<T>(viewport)});
+                out.append(v[k], {in.primitive_id, int_of<T>(viewport)});
             }
             out.restart_strip();
         }
+    }
+};
+// SV_ViewportArrayIndex plus one.
+struct ShowViewport {
+    template <class T> using Input = SceneValue<T>;
+    template <class T> float4<T> operator()(PixelInput<T> const& p, SceneValue<T> const&) const
+    {
+        return {T(p.viewport_index) + T(1), T(1), T(1), T(1)};
     }
 };
 
@@ -67,6 +73,7 @@ struct TwoViewports : Scene {
     TwoViewports() : Scene(640, 480)
     {
         desc.geometry_shader = bind_geometry_shader(ToBothViewports{}, {});
+        use(ShowViewport{});
         set_quad(*this);
         target.viewports = {{0, 0, 320, 480, 0, 1}, {320, 0, 320, 480, 0, 1}};
     }
@@ -99,6 +106,15 @@ TEST(Viewport, S26ATriangleGoesToBothViewportsAndNowhereWithoutOne)
     s.target.viewports.clear();
     s.draw();
     EXPECT_TRUE(s.shows({}, {}));
+    // Without a geometry shader there is one viewport, 0, on either way through the rasterizer.
+    for (bool general : {false, true}) {
+        Scene one(16, 16);
+        one.use(ShowViewport{});
+        one.target.blend.target[0].enable = general;
+        set_quad(one);
+        one.draw();
+        EXPECT_EQ(one.at(3, 3), 1.0f);
+    }
 }
 
 TEST(Viewport, S27EachViewportHasItsScissorAndTheDefaultIsEmpty)
