@@ -154,6 +154,7 @@ TEST(Texture, S63SrgbTexelsAreDecoded)
         auto const c = sample_level(t, Sampler{}, centre(), T(0.0f));
         EXPECT_NEAR(int(unorm_from_float(c.x.raw[0], 8)), row.unorm, 1) << int(row.srgb);
         EXPECT_EQ(c.y.raw[0], c.x.raw[0]);
+        EXPECT_EQ(c.z.raw[0], c.x.raw[0]);
         EXPECT_EQ(unorm_from_float(c.w.raw[0], 8), 0x40u); // alpha is linear
     }
 }
