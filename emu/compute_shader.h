@@ -103,15 +103,57 @@ void store(RWBuffer<E> const& b, IntLanes<N> i, IntLanes<N> value)
 {
     detail::for_each_written<T>(b, i, [&](int l, E& e) { e = E(value.raw[l]); });
 }
-/// InterlockedAdd in the active lanes in order; gives the values before. 32 bits, wraps.
+/// HLSL's Interlocked operations; I and U take their operands for signed and unsigned.
+enum class AtomicOp : std::uint8_t { Add, And, Or, Xor, IMax, IMin, UMax, UMin, Exchange };
+
+/// What an operation leaves in memory. 32 bits, sums wrap.
+constexpr std::uint32_t apply(AtomicOp op, std::uint32_t before, std::uint32_t value)
+{
+    auto const a = std::int32_t(before), b = std::int32_t(value);
+    switch (op) {
+    case AtomicOp::Add:
+        return before + value;
+    case AtomicOp::And:
+        return before & value;
+    case AtomicOp::Or:
+        return before | value;
+    case AtomicOp::Xor:
+        return before ^ value;
+    case AtomicOp::IMax:
+        return std::uint32_t(std::max(a, b));
+    case AtomicOp::IMin:
+        return std::uint32_t(std::min(a, b));
+    case AtomicOp::UMax:
+        return std::max(before, value);
+    case AtomicOp::UMin:
+        return std::min(before, value);
+    default:
+        return value;
+    }
+}
+
+/// An operation on buffer[i] in the active lanes in order; gives the values before, 0 out of range.
 template <class T, class E, int N>
-requires std::integral<E> IntLanes<N> atomic_add(RWBuffer<E> const& b, IntLanes<N> i,
-                                                 IntLanes<N> value)
+requires std::integral<E> IntLanes<N> atomic(AtomicOp op, RWBuffer<E> const& b, IntLanes<N> i,
+                                             IntLanes<N> value)
 {
     IntLanes<N> before(0);
     detail::for_each_written<T>(b, i, [&](int l, E& e) {
         before.raw[l] = std::int32_t(e);
-        e = E(std::uint32_t(e) + std::uint32_t(value.raw[l]));
+        e = E(apply(op, std::uint32_t(e), std::uint32_t(value.raw[l])));
+    });
+    return before;
+}
+/// InterlockedCompareExchange: `value` where buffer[i] is `comparand`; gives the values before.
+template <class T, class E, int N>
+requires std::integral<E> IntLanes<N> atomic_compare_exchange(RWBuffer<E> const& b, IntLanes<N> i,
+                                                              IntLanes<N> comparand,
+                                                              IntLanes<N> value)
+{
+    IntLanes<N> before(0);
+    detail::for_each_written<T>(b, i, [&](int l, E& e) {
+        before.raw[l] = std::int32_t(e);
+        if (before.raw[l] == comparand.raw[l]) e = E(value.raw[l]);
     });
     return before;
 }
@@ -162,15 +204,30 @@ public:
     }
     void store_shared(IntLanes<N> i, T const& value)
     {
-        stores_ += execution.active_lanes;
         Lanes<N> const v = lanes_value(value);
-        for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
-            int const l = std::countr_zero(bits);
-            if (std::size_t(i.raw[l]) < shared_.size())
-                shared_[std::size_t(i.raw[l])] = v.raw[l];
-            else
-                ++out_of_range_;
-        }
+        for_each_stored(i, [&](int l, float& element) { element = v.raw[l]; });
+    }
+    /// The same memory as integers.
+    IntLanes<N> shared_bits(IntLanes<N> i)
+    {
+        return typename IntLanes<N>::Raw(lanes_value(shared(i)).raw);
+    }
+    void store_shared_bits(IntLanes<N> i, IntLanes<N> value)
+    {
+        for_each_stored(
+            i, [&](int l, float& element) { element = std::bit_cast<float>(value.raw[l]); });
+    }
+    /// An operation on the integer at i in the active lanes in order; gives the values before.
+    IntLanes<N> atomic_shared(AtomicOp op, IntLanes<N> i, IntLanes<N> value)
+    {
+        loads_ += execution.active_lanes;
+        IntLanes<N> before(0);
+        for_each_stored(i, [&](int l, float& element) {
+            before.raw[l] = std::bit_cast<std::int32_t>(element);
+            element = std::bit_cast<float>(
+                apply(op, std::uint32_t(before.raw[l]), std::uint32_t(value.raw[l])));
+        });
+        return before;
     }
 
     // For the stage.
@@ -186,6 +243,19 @@ public:
     std::uint64_t shared_out_of_range() const { return out_of_range_; }
 
 private:
+    // work(lane, element) for each active lane whose element exists.
+    template <class Work> void for_each_stored(IntLanes<N> i, Work const& work)
+    {
+        stores_ += execution.active_lanes;
+        for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
+            int const l = std::countr_zero(bits);
+            if (std::size_t(i.raw[l]) < shared_.size())
+                work(l, shared_[std::size_t(i.raw[l])]);
+            else
+                ++out_of_range_;
+        }
+    }
+
     std::array<int, 3> size_;
     std::span<float> shared_;
     int3<std::int32_t> group_id_{0, 0, 0};

@@ -36,12 +36,17 @@ struct Rect {
 enum class CullMode : std::uint8_t { None, Front, Back };
 enum class FillMode : std::uint8_t { Solid, Wireframe };
 
+/// What a depth bias counts in where no depth buffer is bound: steps of 24 bits, as the
+/// specification has it (R110), or of a float depth buffer, as drivers do.
+enum class UnboundDepthBias : std::uint8_t { Unorm24, Float };
+
 struct RasterizerState {
     FillMode fill = FillMode::Solid;
     CullMode cull = CullMode::Back;
     bool front_counter_clockwise = false; ///< R104: otherwise clockwise on the target is front
     std::int32_t depth_bias = 0;
     float depth_bias_clamp = 0, slope_scaled_depth_bias = 0;
+    UnboundDepthBias unbound_depth_bias = UnboundDepthBias::Unorm24;
     bool depth_clip_enable = true;
     bool scissor_enable = false;
     bool multisample_enable = false; ///< lines become 1.4 pixels wide (R107); nothing else

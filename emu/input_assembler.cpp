@@ -77,6 +77,7 @@ void assemble_indexed(std::span<Index const> indices, DrawCall const& call,
                       AssembledPrimitives& out)
 {
     constexpr Index kCut = std::numeric_limits<Index>::max();
+    bool const cuts = call.index_cut == IndexCut::EveryTopology || is_strip(call.topology);
     indices = indices.subspan(std::min<std::size_t>(call.start_index, indices.size()));
     indices = indices.first(std::min<std::size_t>(call.index_count, indices.size()));
     out.index_bytes = sizeof(Index);
@@ -84,7 +85,7 @@ void assemble_indexed(std::span<Index const> indices, DrawCall const& call,
     if constexpr (sizeof(Index) == 4) {
         std::size_t const n = out.vertices_per_primitive;
         if (!is_strip(call.topology) &&
-            std::find(indices.begin(), indices.end(), kCut) == indices.end()) {
+            (!cuts || std::find(indices.begin(), indices.end(), kCut) == indices.end())) {
             out.vertices = indices.first(indices.size() / n * n);
             return;
         }
@@ -95,7 +96,7 @@ void assemble_indexed(std::span<Index const> indices, DrawCall const& call,
         run.clear();
     };
     for (Index i : indices) {
-        if (i == kCut)
+        if (cuts && i == kCut)
             finish();
         else
             run.push_back(i);

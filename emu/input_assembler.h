@@ -29,8 +29,8 @@ enum class PrimitiveTopology : std::uint8_t {
 /// adjacency, 6 with triangle adjacency; of a patch list `control_points`.
 int vertices_per_primitive(PrimitiveTopology topology, int control_points);
 
-/// Indices of a draw: none (vertices 0, 1, 2, ...), 16 or 32 bits. The all-ones index cuts every
-/// topology (R31).
+/// Indices of a draw: none (vertices 0, 1, 2, ...), 16 or 32 bits. The all-ones index is a cut,
+/// see IndexCut.
 using IndexBuffer =
     std::variant<std::monostate, std::span<std::uint16_t const>, std::span<std::uint32_t const>>;
 
@@ -57,6 +57,10 @@ struct DrawAuto {
     std::uint32_t filled_bytes = 0;
 };
 
+/// Topologies that the all-ones index cuts: every one, as the specification has it (R31), or strips
+/// only, as drivers do. It is a vertex's index like any other in those that it does not cut.
+enum class IndexCut : std::uint8_t { EveryTopology, StripsOnly };
+
 /// One draw.
 struct DrawCall {
     PrimitiveTopology topology = PrimitiveTopology::PatchList;
@@ -65,6 +69,7 @@ struct DrawCall {
     std::vector<VertexBuffer> vertex_buffers = {};
     std::vector<InputElement> layout = {};
     IndexBuffer indices = {};
+    IndexCut index_cut = IndexCut::EveryTopology;
     std::uint32_t start_index = 0;
     std::uint32_t index_count = 0xffffffffu;          ///< at most; the default takes all
     std::int32_t base_vertex = 0;                     ///< added to each index (R32)

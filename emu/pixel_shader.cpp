@@ -21,6 +21,7 @@ PixelShaderCost PixelProgram::probe(ShaderBinding const& binding) const
          no,
          no,
          nullptr,
+         nullptr,
          rows,
          depth,
          coverage,

@@ -34,10 +34,11 @@ namespace tessemu {
 
 template <class T> struct PixelInput {
     float4<T> position; ///< SV_Position: pixel centre or sample, unclamped depth, w (R121, R122)
-    int_of<T> primitive_id; ///< SV_PrimitiveID
-    mask_of<T> front_face;  ///< SV_IsFrontFace
-    int_of<T> sample_index; ///< SV_SampleIndex at sample frequency, 0 otherwise
-    int_of<T> coverage;     ///< SV_Coverage: covered samples after the mask (R119)
+    int_of<T> primitive_id;   ///< SV_PrimitiveID
+    mask_of<T> front_face;    ///< SV_IsFrontFace
+    int_of<T> sample_index;   ///< SV_SampleIndex at sample frequency, 0 otherwise
+    int_of<T> coverage;       ///< SV_Coverage: covered samples after the mask (R119)
+    int_of<T> viewport_index; ///< SV_ViewportArrayIndex (R99)
 };
 
 /// What a compiled pixel shader tells the pipeline.
@@ -63,6 +64,7 @@ struct FragmentBatch {
     std::int32_t const* front_face; ///< 0 or -1
     std::int32_t const* sample_index;
     std::int32_t const* coverage;
+    std::int32_t const* viewport_index; ///< null: all 0
     std::int32_t const* live; ///< 0: a helper, run for its quad and counted nowhere; null: all live
     float* const* color;      ///< out: component k of o(i) at color[4 * i + k]
     float* depth;             ///< out, where the shader writes it
@@ -169,6 +171,9 @@ private:
             __builtin_memcpy(&pixel.front_face.raw, b.front_face + first, 4 * N);
             __builtin_memcpy(&pixel.sample_index.raw, b.sample_index + first, 4 * N);
             __builtin_memcpy(&pixel.coverage.raw, b.coverage + first, 4 * N);
+            pixel.viewport_index = int_of<T>(0);
+            if (b.viewport_index)
+                __builtin_memcpy(&pixel.viewport_index.raw, b.viewport_index + first, 4 * N);
             Input input{};
             int k = 0;
             for_each_scalar(input, [&](auto& s) { s = lanes(b.attributes[k++]); });

@@ -69,6 +69,21 @@ void project_group(ViewportTransform const& t, float const* shaded, std::size_t 
     p.inverse_w.store(out.inverse_w.data() + i);
 }
 
+// R110. 0: a float depth buffer.
+int unorm_depth_bits(RasterTarget const& target)
+{
+    if (!target.depth)
+        return target.rasterizer.unbound_depth_bias == UnboundDepthBias::Unorm24 ? 24 : 0;
+    switch (target.depth->format()) {
+    case Format::D16_UNORM:
+        return 16;
+    case Format::D24_UNORM_S8_UINT:
+        return 24;
+    default:
+        return 0;
+    }
+}
+
 } // namespace
 
 struct PrimitiveAssembler::ClipVertex {
@@ -96,9 +111,7 @@ PrimitiveAssembler::PrimitiveAssembler(RasterTarget const& target,
       layout_(layout),
       has_bias_(target.rasterizer.depth_bias != 0 ||
                 target.rasterizer.slope_scaled_depth_bias != 0),
-      unorm_depth_bits_(!target.depth || target.depth->format() == Format::D24_UNORM_S8_UINT ? 24
-                        : target.depth->format() == Format::D16_UNORM                        ? 16
-                                                                                             : 0)
+      unorm_depth_bits_(unorm_depth_bits(target))
 {
     for (Viewport const& v : target.viewports)
         transforms_.emplace_back(v, target.rasterizer.guard_band_px);

@@ -452,6 +452,7 @@ void TileRasterizer::shade_and_merge()
     batch.front_face = front_face_;
     batch.sample_index = sample_index_;
     batch.coverage = covered_;
+    batch.viewport_index = viewport_;
     batch.live = quads_ ? live_ : nullptr;
     batch.color = color_rows_.data();
     batch.depth = depth_;
@@ -476,7 +477,7 @@ void TileRasterizer::shade_and_merge()
                 float const z =
                     info_.writes_depth ? depth_[q] : sample_z_[std::size_t(s) * kRow + q];
                 if (!merger_.test(pixel_x_[q], pixel_y_[q], s, z, front_face_[q] != 0,
-                                  target.viewports[viewport_[q]]))
+                                  target.viewports[std::size_t(viewport_[q])]))
                     continue;
                 ++counters_.passed_samples;
             }

@@ -85,8 +85,7 @@ private:
     std::size_t queued_ = 0;
     std::int32_t pixel_x_[kRow], pixel_y_[kRow], primitive_id_[kRow], front_face_[kRow],
         sample_index_[kRow], covered_[kRow], passed_[kRow], live_[kRow], discard_[kRow],
-        out_coverage_[kRow];
-    std::uint8_t viewport_[kRow];
+        out_coverage_[kRow], viewport_[kRow];
     float position_[4][kRow], depth_[kRow];
     Floats sample_z_, attributes_, color_;
     std::vector<float const*> attribute_rows_;

@@ -74,12 +74,13 @@ std::pair<std::vector<float>, int> make_mip_levels(std::span<float const> texels
 enum class AddressMode : std::uint8_t { Wrap, Mirror, Clamp, Border, MirrorOnce };
 enum class Filter : std::uint8_t { Point, Linear };
 
+/// As made, Direct3D's default: what a shader samples with where no sampler is bound.
 struct Sampler {
     Filter min = Filter::Linear, mag = Filter::Linear, mip = Filter::Linear;
     AddressMode address_u = AddressMode::Clamp, address_v = AddressMode::Clamp;
-    std::array<float, 4> border{0, 0, 0, 0};
-    float lod_bias = 0, min_lod = 0, max_lod = 3.402823466e38f;
-    Comparison comparison = Comparison::LessEqual; ///< (reference FUNC texel), of sample_cmp
+    std::array<float, 4> border{1, 1, 1, 1};
+    float lod_bias = 0, min_lod = -3.402823466e38f, max_lod = 3.402823466e38f;
+    Comparison comparison = Comparison::Never; ///< (reference FUNC texel), of sample_cmp
 };
 
 /// log2 of x in 8.8 fixed point, rounded down; without libm. 0 and denormals give -32768, infinity

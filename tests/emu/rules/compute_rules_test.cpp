@@ -157,7 +157,7 @@ struct Append {
         using Int = int_of<T>;
         group.for_each_thread([&](ComputeInput<T> const& in) {
             when<T>((in.dispatch_thread_id.x & Int(1)) == Int(0), [&] {
-                Int const at = atomic_add<T>(counter, Int(0), Int(1));
+                Int const at = atomic<T>(AtomicOp::Add, counter, Int(0), Int(1));
                 store<T>(list, at, in.dispatch_thread_id.x);
             });
         });
