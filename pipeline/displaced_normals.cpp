@@ -31,37 +31,81 @@ std::array<Line, 2> lines_through(TessellatorDomain domain, float u, float v)
              {kU[b] - kU[k], kV[b] - kV[k], -weight[b], weight[k]}}};
 }
 
-// The derivative at x = 0 of the polynomial through five points a step apart. A sixteenth: wider,
-// a rational patch is no polynomial; narrower, its points' roundings show.
+// Lagrange's polynomial of a node of 0, 1, ..., degree: its value and its derivative.
+double basis(int degree, int node, double t)
+{
+    double product = 1;
+    for (int l = 0; l <= degree; ++l)
+        if (l != node) product *= (t - l) / (node - l);
+    return product;
+}
+double basis_derivative(int degree, int node, double t)
+{
+    double sum = 0;
+    for (int m = 0; m <= degree; ++m) {
+        if (m == node) continue;
+        double product = 1.0 / (node - m);
+        for (int l = 0; l <= degree; ++l)
+            if (l != node && l != m) product *= (t - l) / (node - l);
+        sum += product;
+    }
+    return sum;
+}
+
+// Derivatives at x = 0 of what is known at points of a line.
+//
+// Singles round, so the longest differences are the best: of the polynomials through 2, 3 or 5 of
+// nine points along all of the line the first one that goes through the others as well. A patch
+// that is none of these has five points around x = 0, a sixteenth apart. The ends are left out,
+// where other normals than the inside's may hold.
 class Stencil {
 public:
-    static constexpr int kPoints = 5;
-    static constexpr float kStep = 1.0f / 16;
+    static constexpr int kWide = 8, kNarrow = 4, kPoints = kWide + 1 + kNarrow + 1;
 
-    // Off the ends of the line, where other normals than the inside's may hold; around 0 else.
     explicit Stencil(Line const& line)
-        : first_(std::clamp(-2 * kStep, line.low + kStep / 4,
-                            line.high - kStep / 4 - (kPoints - 1) * kStep))
+        : wide_first_(line.low + kOff),
+          wide_step_((line.high - line.low - 2 * kOff) / kWide),
+          narrow_first_(std::clamp(-0.5f * kNarrow * kStep, line.low + kOff,
+                                   line.high - kOff - kNarrow * kStep))
     {
-        double const at = double(-first_) / kStep;
-        for (int k = 0; k < kPoints; ++k) {
-            double sum = 0;
-            for (int m = 0; m < kPoints; ++m) {
-                if (m == k) continue;
-                double product = 1.0 / (k - m);
-                for (int l = 0; l < kPoints; ++l)
-                    if (l != k && l != m) product *= (at - l) / (k - l);
-                sum += product;
-            }
-            weights_[std::size_t(k)] = sum / kStep;
-        }
     }
-    float x(int k) const { return first_ + float(k) * kStep; }
-    double weight(int k) const { return weights_[std::size_t(k)]; }
+    float x(int k) const
+    {
+        return k <= kWide ? wide_first_ + float(k) * wide_step_
+                          : narrow_first_ + float(k - kWide - 1) * kStep;
+    }
+    using Values = std::array<glm::dvec3, kPoints>;
+    /// \param error  of a component that is not worth a higher degree
+    glm::dvec3 derivative(Values const& values, double error) const
+    {
+        for (int degree : {1, 2, 4}) {
+            int const apart = kWide / degree;
+            bool fits = true;
+            for (int k = 0; k <= kWide && fits; ++k) {
+                glm::dvec3 off = -values[std::size_t(k)];
+                for (int i = 0; i <= degree; ++i)
+                    off += basis(degree, i, double(k) / apart) * values[std::size_t(i * apart)];
+                fits = k % apart == 0 || glm::dot(off, off) <= error * error;
+            }
+            if (fits) return difference(values.data(), degree, apart, wide_first_, wide_step_);
+        }
+        return difference(values.data() + kWide + 1, kNarrow, 1, narrow_first_, kStep);
+    }
 
 private:
-    float first_;
-    std::array<double, kPoints> weights_{};
+    static constexpr float kStep = 1.0f / 16, kOff = 1.0f / 64;
+
+    static glm::dvec3 difference(glm::dvec3 const* values, int degree, int apart, double first,
+                                 double step)
+    {
+        step *= apart;
+        glm::dvec3 sum(0);
+        for (int i = 0; i <= degree; ++i)
+            sum += basis_derivative(degree, i, -first / step) * values[i * apart];
+        return sum / step;
+    }
+
+    float wide_first_, wide_step_, narrow_first_;
 };
 
 glm::dvec3 as_vector(float3<float> const& v)
@@ -238,17 +282,21 @@ private:
     }
 
     struct Tangent {
-        glm::dvec3 position{0}, normal{0}; // derivatives
+        glm::dvec3 position, normal; // derivatives
     };
     static Tangent tangent(Stencil const& stencil, float const* points, std::size_t stride)
     {
-        Tangent out;
+        Stencil::Values positions, normals;
+        double size = 0;
         for (int k = 0; k < Stencil::kPoints; ++k) {
             auto const p = load_column<Point>(points + k, stride);
-            out.position += stencil.weight(k) * as_vector(p.position);
-            out.normal += stencil.weight(k) * as_vector(p.normal);
+            positions[std::size_t(k)] = as_vector(p.position);
+            normals[std::size_t(k)] = as_vector(p.normal);
+            size = std::max(size, glm::length(positions[std::size_t(k)]));
         }
-        return out;
+        double const rounding = 0x1p-21; // a few of single precision
+        return {stencil.derivative(positions, rounding * size),
+                stencil.derivative(normals, rounding)};
     }
 
     void replace_normal(DomainBatch const& b, std::size_t i, Line const* lines,

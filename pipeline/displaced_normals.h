@@ -5,8 +5,8 @@
 //
 //     p_1 x p_2 = (N . (a_1 x a_2)) N + h_2 (a_1 x N) + h_1 (N x a_2),     a_i = S_i + h N_i
 //
-// S_i and N_i are differences over five points of the patch, exact for polynomials of degree 4. h_i
-// is the height map's own derivative. Where it jumps, as at a texel's centre, both sides' mean
+// S_i and N_i are differences between points of the patch, exact for polynomials of degree 4 but for
+// the points' roundings. h_i is the height map's own derivative. Where it jumps, as at a texel's centre, both sides' mean
 // counts, and at a point that several patches have the mean of theirs, from each its own side: so
 // all have the same bits. Where the smooth surface has no tangents, at a pole, N stays.
 //
@@ -22,7 +22,7 @@ namespace tessemu {
 /// statistics are those of visit_surface(): differences are not counted.
 ///
 /// Throws Error where the settings have no displacement.
-/// \cost  draws twice, and eleven times the domain shader each; memory for points on patches' edges
+/// \cost  draws twice, and 29 times the domain shader in all; memory for points on patches' edges
 ListStatistics visit_displaced_surface(PatchMesh const& mesh, FrameSettings const& settings,
                                        ThreadPool const& threads, SurfaceVisitor const& visit);
 
