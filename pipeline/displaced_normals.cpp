@@ -283,6 +283,7 @@ private:
 
     struct Tangent {
         glm::dvec3 position, normal; // derivatives
+        double rounding;             // below it a derivative of the position is none
     };
     static Tangent tangent(Stencil const& stencil, float const* points, std::size_t stride)
     {
@@ -296,7 +297,7 @@ private:
         }
         double const rounding = 0x1p-21; // a few of single precision
         return {stencil.derivative(positions, rounding * size),
-                stencil.derivative(normals, rounding)};
+                stencil.derivative(normals, rounding), 8 * rounding * size};
     }
 
     void replace_normal(DomainBatch const& b, std::size_t i, Line const* lines,
@@ -333,11 +334,22 @@ private:
         double const height = glm::dot(displaced - as_vector(vertex.base), n);
         glm::dvec3 const a = tangents[0].position + height * tangents[0].normal,
                          b = tangents[1].position + height * tangents[1].normal;
-        double const area = glm::dot(n, glm::cross(a, b));
+        auto const area_of = [&](glm::dvec3 const& x, glm::dvec3 const& y) {
+            return glm::dot(n, glm::cross(x, y));
+        };
+        auto const is_pole = [](double area, glm::dvec3 const& x, glm::dvec3 const& y) {
+            return !(std::abs(area) > 1e-4 * glm::length(x) * glm::length(y));
+        };
+        glm::dvec3 const &s = tangents[0].position, &t = tangents[1].position;
+        double const area = area_of(a, b), smooth_area = area_of(s, t);
         glm::dvec3 const turn = slopes[1] * glm::cross(a, n) + slopes[0] * glm::cross(n, b);
-        bool const pole = !(std::abs(area) > 1e-5 * glm::length(a) * glm::length(b));
-        if (pole || (height == 0 && turn == glm::dvec3(0))) return n;
-        return std::copysign(1.0, area) * n + turn / std::abs(area);
+        double const shorter = std::min(glm::length(s), glm::length(t));
+        if (shorter <= std::max(tangents[0].rounding, tangents[1].rounding) ||
+            is_pole(smooth_area, s, t) || is_pole(area, a, b))
+            return n;
+        if (height == 0 && turn == glm::dvec3(0)) return n;
+        bool const folded = (area < 0) != (smooth_area < 0); // displaced through a focal point
+        return (folded ? -1.0 : 1.0) * (n + turn / area);
     }
 
     DomainShader surface_;

@@ -8,7 +8,7 @@
 // S_i and N_i are differences between points of the patch, exact for polynomials of degree 4 but for
 // the points' roundings. h_i is the height map's own derivative. Where it jumps, as at a texel's centre, both sides' mean
 // counts, and at a point that several patches have the mean of theirs, from each its own side: so
-// all have the same bits. Where the smooth surface has no tangents, at a pole, N stays.
+// all have the same bits. Where the tangents are parallel or zero, at a pole, N stays.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
