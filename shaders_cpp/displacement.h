@@ -237,13 +237,16 @@ struct DisplacementEpilog {
     template <class T>
     DisplacedVertex<T> operator()(DomainInput<T> const& in, SurfacePoint<T> const& s) const
     {
-        float2<T> const origin(T(0), T(0));
-        OwnedCoordinates::Pair<T> c{{origin, origin}, {origin, origin}};
-        if (height.is_image()) c = coordinates.template operator()<T>(in);
-        T const h = T(scale) * height.template operator()<T>(s.position, c.owner);
+        float2<T> own(T(0), T(0));
+        TexelPlace<T> owner{own, own};
+        if (height.is_image()) {
+            OwnedCoordinates::Pair<T> const c = coordinates.template operator()<T>(in);
+            own = c.own.whole + c.own.part;
+            owner = c.owner;
+        }
+        T const h = T(scale) * height.template operator()<T>(s.position, owner);
         float3<T> const displaced = s.position + h * s.normal;
-        return {transform(view_projection, displaced), s.normal, s.position,
-                float2<T>(c.own.whole + c.own.part)};
+        return {transform(view_projection, displaced), s.normal, s.position, own};
     }
 };
 
