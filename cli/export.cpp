@@ -4,6 +4,7 @@
 #include "cli/job.h"
 #include "cli/verbs.h"
 #include "io/mesh_writer.h"
+#include "pipeline/displaced_normals.h"
 
 #include <fmt/format.h>
 
@@ -32,11 +33,14 @@ int run(ExportRequest const& o)
     Stopwatch const clock;
     std::size_t all = 0, done = 0;
     for (PatchCount const& c : job.patches().patch_counts()) all += c.patches;
+    SurfaceVisitor const add = [&](SurfacePatch const& patch) {
+        writer.add(patch);
+        if (++done % 64 == 0) bar(done, all);
+    };
+    bool const displaced = o.surface.shading.normals == ShadingRequest::Normals::Displaced;
     ListStatistics const statistics =
-        visit_surface(job.patches(), job.frame, threads, [&](SurfacePatch const& patch) {
-            writer.add(patch);
-            if (++done % 64 == 0) bar(done, all);
-        });
+        displaced ? visit_displaced_surface(job.patches(), job.frame, threads, add)
+                  : visit_surface(job.patches(), job.frame, threads, add);
     bar.clear();
     writer.finish();
     add_run(job.header, job, threads, clock.seconds());
@@ -56,7 +60,7 @@ void add_export(CommandLine& program)
                                   "  tessemu export cage.obj --tess 4 --weld -o cage4.obj");
     verb.required("-o", o->output, output_path, "mesh, .obj or .ply; '-': OBJ on standard output");
     verb.flag("--weld", o->weld, "join vertices with equal bits");
-    add_options(verb, o->surface);
+    add_options(verb, o->surface, NormalWords::AndDisplaced);
     add_vertex_cache(verb, o->surface);
     add_options(verb, o->run);
     verb.runs([o] { return run(*o); });

@@ -84,7 +84,7 @@ Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const
 {
     Job job;
     job.frame.machine = shading.machine();
-    job.frame.true_normals = shading.true_normals;
+    job.frame.true_normals = shading.normals != ShadingRequest::Normals::Frozen;
     job.poses.emplace_back();
     Stopwatch const load_clock;
     Model model = open_model(o.model);
@@ -106,7 +106,7 @@ Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const
 
 void add_config(Config& c, ShadingRequest const& o)
 {
-    c.emplace_back("normals", std::string(o.true_normals ? "true" : "frozen"));
+    c.emplace_back("normals", name_of(o.normals));
     c.emplace_back("contraction", name_of(o.products));
 }
 
@@ -131,9 +131,10 @@ std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o, J
                                 *o.displace.scale, job.placement.length_to_file(diagonal)));
     if (kind == Kind::Studs)
         return std::make_shared<Displacement>(Displacement::studs(diagonal / 16, scale));
-    HeightImage const image = read_height_image(path);
+    HeightImage image = read_height_image(path);
     try {
-        return std::make_shared<Displacement>(mesh.base_topology(), image, scale);
+        return std::make_shared<Displacement>(mesh.base_topology(), std::move(image), scale,
+                                              o.displace.wrap.value_or(HeightWrap::Repeat));
     } catch (Error const& e) {
         throw Error(job.path + ": " + e.what());
     }
@@ -234,6 +235,8 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     c.emplace_back("displace", name_of(heights));
     if (f.displacement)
         c.emplace_back("displace_scale", job.placement.length_to_file(f.displacement->scale()));
+    if (heights.kind == DisplaceRequest::Heights::Kind::Image)
+        c.emplace_back("displace_wrap", name_of(o.displace.wrap.value_or(HeightWrap::Repeat)));
     c.emplace_back("animate", name_of(o.animate.motion));
     if (f.pose) c.emplace_back("phase", o.animate.phase);
     return job;

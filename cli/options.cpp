@@ -249,29 +249,41 @@ void add_options(Verb& verb, ModelRequest& o)
               "refuse a mesh that would have to be cut or lose faces, instead of warning");
 }
 
-void add_options(Verb& verb, ShadingRequest& o)
+void add_options(Verb& verb, ShadingRequest& o, NormalWords offered)
 {
-    verb.option("--normals", o.true_normals, one_of<bool>({{"frozen", false}, {"true", true}}),
-                "inside a patch: frozen (LOOP09 4.4) or true", "frozen");
+    using Normals = ShadingRequest::Normals;
+    std::vector<std::pair<std::string, Normals>> words{{"frozen", Normals::Frozen},
+                                                       {"true", Normals::True}};
+    std::string about = "inside a patch: frozen (LOOP09 4.4) or true, of the smooth surface";
+    if (offered == NormalWords::AndDisplaced) {
+        words.emplace_back("displaced", Normals::Displaced);
+        about += "; displaced: of the displaced one, moved along its true normals";
+    }
+    verb.option("--normals", o.normals, one_of(std::move(words)), about, "frozen");
     verb.option("--contraction", o.products, parse_contraction,
                 "products that feed sums: none, all, mixed:SEED", "none");
     verb.option("--lanes", o.lanes, parse_lanes, "4, 8 or 16; changes no result",
                 std::to_string(kNativeLanes));
 }
 
-void add_options(Verb& verb, SurfaceRequest& o)
+void add_options(Verb& verb, SurfaceRequest& o, NormalWords words)
 {
     add_options(verb, o.model);
     verb.option("--tess", o.tess, parse_tess, "tess factor of every edge and inside, above 0 to 64",
                 "8");
     add_partitioning(verb, o.partitioning);
-    add_options(verb, o.shading);
+    add_options(verb, o.shading, words);
     verb.option("--displace", o.displace.heights, parse_heights,
                 "along the normal: studs, a pattern in space; or an image on the mesh's texture "
-                "coordinates; or none",
+                "coordinates, whose first channel counts as it is; or none",
                 "none");
     verb.option("--displace-scale", o.displace.scale, finite_number,
                 "displacement of a white texel, in the model's units [0.01 of its diagonal]");
+    verb.option("--displace-wrap", o.displace.wrap,
+                one_of<HeightWrap>({{"repeat", HeightWrap::Repeat},
+                                    {"clamp", HeightWrap::Clamp},
+                                    {"mirror", HeightWrap::Mirror}}),
+                "of an image, beyond its border: repeat, clamp, mirror [repeat]");
     using Motion = AnimateRequest::Motion;
     verb.option("--animate", o.animate.motion,
                 one_of<Motion>({{"none", Motion::None}, {"sway", Motion::Sway}}),
@@ -329,9 +341,22 @@ void check_request(SurfaceRequest const& o)
 {
     if (o.displace.scale && o.displace.heights.kind == DisplaceRequest::Heights::Kind::None)
         throw Error("--displace-scale needs --displace");
+    if (o.displace.wrap && o.displace.heights.kind != DisplaceRequest::Heights::Kind::Image)
+        throw Error("--displace-wrap needs --displace IMAGE, --displace is " +
+                    name_of(o.displace.heights));
+    if (o.shading.normals == ShadingRequest::Normals::Displaced &&
+        o.displace.heights.kind == DisplaceRequest::Heights::Kind::None)
+        throw Error("--normals displaced needs --displace; the smooth surface's normals are true "
+                    "and frozen");
     if (o.animate.motion == AnimateRequest::Motion::None &&
         (o.animate.frames > 1 || o.animate.phase != 0))
         throw Error("--frames and --phase need --animate");
+}
+
+std::string name_of(ShadingRequest::Normals normals)
+{
+    using Normals = ShadingRequest::Normals;
+    return normals == Normals::Frozen ? "frozen" : normals == Normals::True ? "true" : "displaced";
 }
 
 std::string name_of(ShadingRequest::Products const& p)
@@ -352,6 +377,11 @@ std::string name_of(DisplaceRequest::Heights const& h)
     using Kind = DisplaceRequest::Heights::Kind;
     if (h.kind == Kind::None) return "none";
     return h.kind == Kind::Studs ? "studs" : std::filesystem::path(h.image).filename().string();
+}
+
+std::string name_of(HeightWrap wrap)
+{
+    return wrap == HeightWrap::Repeat ? "repeat" : wrap == HeightWrap::Clamp ? "clamp" : "mirror";
 }
 
 std::string name_of(AnimateRequest::Motion motion)

@@ -20,18 +20,19 @@ struct ModelRequest {
 
 /// --normals, --contraction, --lanes
 struct ShadingRequest {
+    enum class Normals { Frozen, True, Displaced };
     struct Products { ///< what becomes of those that feed sums
         Contraction contraction = Contraction::None;
         std::uint64_t seed = 0;
     };
-    bool true_normals = false;
+    Normals normals = Normals::Frozen;
     Products products;
     int lanes = kNativeLanes;
 
     Machine machine() const { return {lanes, products.contraction, products.seed}; }
 };
 
-/// --displace, --displace-scale
+/// --displace, --displace-scale, --displace-wrap
 struct DisplaceRequest {
     struct Heights {
         enum class Kind { None, Studs, Image };
@@ -40,6 +41,7 @@ struct DisplaceRequest {
     };
     Heights heights;
     std::optional<double> scale; ///< of a white texel; by default a share of the model's diagonal
+    std::optional<HeightWrap> wrap; ///< of an image; by default it repeats
 };
 
 /// --animate, --phase, and of draw --frames
@@ -92,9 +94,11 @@ struct RunRequest {
 };
 
 void add_options(Verb& verb, ModelRequest& o);
-void add_options(Verb& verb, ShadingRequest& o);
+/// What a verb offers of --normals.
+enum class NormalWords { Smooth, AndDisplaced };
+void add_options(Verb& verb, ShadingRequest& o, NormalWords words = NormalWords::Smooth);
 /// With the two above.
-void add_options(Verb& verb, SurfaceRequest& o);
+void add_options(Verb& verb, SurfaceRequest& o, NormalWords words = NormalWords::Smooth);
 void add_options(Verb& verb, PictureRequest& o);
 void add_options(Verb& verb, RunRequest& o);
 void add_partitioning(Verb& verb, Partitioning& partitioning);
@@ -107,9 +111,11 @@ void add_level(Verb& verb, int& level, std::string const& about);
 void check_request(SurfaceRequest const& o);
 
 // Settings by name, as a user writes them and results hold them.
+std::string name_of(ShadingRequest::Normals normals);
 std::string name_of(ShadingRequest::Products const& products);
 std::string name_of(AdaptiveFactors const& factors);
 std::string name_of(DisplaceRequest::Heights const& heights); ///< an image without its folder
+std::string name_of(HeightWrap wrap);
 std::string name_of(AnimateRequest::Motion motion);
 
 [[noreturn]] void refuse(std::string const& text, std::string const& option,

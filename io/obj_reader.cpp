@@ -191,7 +191,7 @@ private:
     // A fault here leaves the mesh without texture coordinates; its surface is what it is.
     void coordinates(std::vector<std::string_view> const& words, int line)
     {
-        float x[3] = {};
+        double x[3] = {};
         bool good = words.size() > 1 && words.size() <= 4;
         for (std::size_t i = 1; good && i < words.size(); ++i)
             good = is_number(words[i], x[i - 1]) && std::abs(x[i - 1]) <= kMaxTextureCoordinate;
@@ -401,7 +401,7 @@ private:
     std::vector<glm::dvec3> positions_;
     std::vector<InBetween> in_between_;
     WrittenDigits digits_;
-    std::vector<glm::vec2> coordinates_;
+    std::vector<glm::dvec2> coordinates_;
     std::size_t normals_ = 0;
     ForwardIndices vertex_indices_, coordinate_indices_, normal_indices_;
     bool corner_has_coordinates_ = false;

@@ -7,10 +7,14 @@
 // is read where the edge's or the corner's owner has it, in the edge's canonical direction, and the
 // solid pattern depends on P alone.
 //
+// A sampler's weights have 8 bits, 256 steps from texel to texel, so the shader loads four texels
+// and weighs them itself. Places in the map are counted in texels, as a whole number and a part, or
+// the shader would lose the part's last bits: a single has 24, and a map may be 16,384 wide.
+//
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "emu/texture.h"
+#include "emu/memory.h"
 #include "shaders_cpp/domain_edges.h"
 #include "shaders_cpp/projection.h"
 
@@ -21,7 +25,7 @@ template <class T> struct DisplacedVertex {
     float4<T> position;    ///< SV_Position
     float3<T> normal;      ///< of the smooth surface, object space
     float3<T> base;        ///< the smooth surface's point, object space
-    float2<T> coordinates; ///< texture coordinates of the patch itself
+    float2<T> coordinates; ///< of the patch itself in the height map, in texels
     static constexpr auto signature()
     {
         return std::tuple{&DisplacedVertex::position, &DisplacedVertex::normal,
@@ -33,25 +37,74 @@ template <class T> struct DisplacedVertex {
 /// surface.
 inline constexpr int kEpilogSlot = 64;
 
-/// Heights in [0, 1].
+/// What lies beyond a height map's border: Direct3D's address modes WRAP, CLAMP and MIRROR.
+enum class HeightWrap : std::uint8_t { Repeat, Clamp, Mirror };
+
+/// A place in a height map: `whole` and `part` added, in texels from the first texel's centre, rows
+/// from the top.
+template <class T> struct TexelPlace {
+    float2<T> whole, part;
+    static constexpr auto signature() { return std::tuple{&TexelPlace::whole, &TexelPlace::part}; }
+};
+
+/// Heights, mostly in [0, 1].
 struct HeightMap {
     static constexpr int kImageSlot = kEpilogSlot;
 
-    Texture2D image;     ///< first component; not bound: the solid pattern
+    Buffer<float> texels; ///< an R32_FLOAT texture, row by row; none: the solid pattern
+    int width = 0, height = 0;
+    HeightWrap wrap = HeightWrap::Repeat;
     float frequency = 1; ///< of the pattern, periods per unit of length
 
-    /// \param base         the smooth surface's point
-    /// \param coordinates  texture coordinates, v upwards as in OBJ files; the image repeats
-    template <class T> T operator()(float3<T> const& base, float2<T> const& coordinates) const
+    bool is_image() const { return !texels.elements().empty(); }
+    ResourceInfo info() const
     {
-        if (!image.bound()) return studs<T>(base);
-        Sampler sampler;
-        sampler.address_u = sampler.address_v = AddressMode::Wrap;
-        float2<T> const at(coordinates.x, T(T(1) - coordinates.y));
-        return sample_level<T>(image, sampler, at, T(0)).x;
+        ResourceInfo info = texels.info();
+        info.kind = ResourceKind::Texture;
+        return info;
+    }
+
+    /// \param base  the smooth surface's point
+    template <class T> T operator()(float3<T> const& base, TexelPlace<T> const& place) const
+    {
+        return is_image() ? bilinear<T>(place) : studs<T>(base);
     }
 
 private:
+    /// \cost 4 fetches
+    template <class T> T bilinear(TexelPlace<T> const& place) const
+    {
+        Routine<T> const here("height");
+        T const left = floor(place.part.x), top = floor(place.part.y);
+        T const fx = place.part.x - left, fy = place.part.y - top;
+        T const i = place.whole.x + left, j = place.whole.y + top;
+        int_of<T> const x0 = address<T>(i, width), x1 = address<T>(T(i + T(1)), width);
+        int_of<T> const y0 = address<T>(j, height) * int_of<T>(width),
+                        y1 = address<T>(T(j + T(1)), height) * int_of<T>(width);
+        auto const between = [](T const& a, T const& b, T const& f) -> T {
+            T const step = b - a;
+            return a + f * step;
+        };
+        T const upper = between(load<T>(texels, y0 + x0), load<T>(texels, y0 + x1), fx);
+        T const lower = between(load<T>(texels, y1 + x0), load<T>(texels, y1 + x1), fx);
+        return between(upper, lower, fy);
+    }
+
+    /// A whole number as the number of a texel (R146): exact below 2^22, which bits beyond that a
+    /// coordinate has not.
+    template <class T> int_of<T> address(T x, int size) const
+    {
+        if (wrap != HeightWrap::Clamp) {
+            float const period = float(wrap == HeightWrap::Mirror ? 2 * size : size);
+            // Half a texel keeps the quotient off whole numbers, so its rounding does no harm.
+            T const quotient = T(1 / period) * T(x + T(0.5));
+            x = x - T(period) * floor(quotient);
+        }
+        if (wrap == HeightWrap::Mirror) x = min(x, T(T(float(2 * size - 1)) - x));
+        x = min(max(x, T(0)), T(float(size - 1)));
+        return asuint(T(x + T(0x1p23f))) & int_of<T>(0x7fffff);
+    }
+
     /// Studs on a cubic lattice: (b(x) b(y) + b(y) b(z) + b(z) b(x)) / 3 with a bump of one period
     /// b(x) = 16 f^2 (1 - f)^2, f the fraction of x; once differentiable.
     template <class T> T studs(float3<T> const& base) const
@@ -68,14 +121,18 @@ private:
     }
 };
 
-/// Texture coordinates of faces' corners, and whose they are on shared edges and at corners.
+/// Texture coordinates of faces' corners, in texels of the height map, and whose they are on shared
+/// edges and at corners.
 ///
 /// A corner of a face has four pairs: the face's own; those of the edge's owner at both ends of the
 /// edge that starts there, in the edge's canonical direction; those of the vertex's owner. Of the
-/// faces that meet there the owner is the one with the smallest number. A patch that is a part of
-/// its face looks up where its points lie in the face, so that parts meet with equal bits too.
+/// faces that meet there the owner is the one with the smallest number. They are parts, to be added
+/// to the whole numbers of the face, the edge and the vertex (TexelPlace), which follow them. A
+/// patch that is a part of its face looks up where its points lie in the face, so that parts meet
+/// with equal bits too.
 struct OwnedCoordinates {
-    static constexpr int kFloats = 8;
+    static constexpr int kPairs = 4, kWholes = 3;
+    static constexpr int kFloats = 2 * (kPairs + kWholes);
     /// Bits of a patch's second word.
     static constexpr int kTurns = 3;    ///< how often the patch is turned against the face
     static constexpr int kReversed = 2; ///< shift: bit k, edge k runs against its canonical one
@@ -83,14 +140,14 @@ struct OwnedCoordinates {
     static constexpr int kLevel = 8;    ///< shift: the patch has a side of 2^-level of the face's
     static constexpr int kCell = 16;    ///< shift: its cell, row by row
 
-    Buffer<float> corners;         ///< [face corner][4][2]
+    Buffer<float> corners;         ///< [face corner][kPairs + kWholes][2]
     Buffer<std::uint32_t> patches; ///< [primitive][2]: the face's first corner; the bits above
     int sides = 4;
 
     template <class T> struct Pair {
-        float2<T> own, owner;
+        TexelPlace<T> own, owner;
     };
-    /// At (u, v) of the patch. \cost inside a quad 10 mul, 8 fetches
+    /// At (u, v) of the patch. \cost inside a quad 10 mul, 10 fetches
     template <class T> Pair<T> operator()(DomainInput<T> const& in) const
     {
         Routine<T> const here("owned_coordinates");
@@ -116,14 +173,18 @@ private:
                 kFloats * (first + (corner + (word & kTurns)) % sides) + 2 * which;
             return {load<T>(corners, at), load<T>(corners, at + 1)};
         };
+        // The whole numbers behind the pairs: of the face, of an edge, of a vertex.
+        auto const place = [&](int corner, int which, float2<T> const& part) -> TexelPlace<T> {
+            return {read(corner, kPairs + which), part};
+        };
         float2<T> const c0 = read(0, 0), c1 = read(1, 0), c2 = read(2, 0);
         T const U = T(1) - u, V = T(1) - v, w = U - v;
         Pair<T> r;
         if (sides == 4) {
             float2<T> const bottom = U * c0 + u * c1, top = U * read(3, 0) + u * c2;
-            r.own = V * bottom + v * top;
+            r.own = place(0, 0, V * bottom + v * top);
         } else {
-            r.own = u * c0 + v * c1 + w * c2;
+            r.own = place(0, 0, u * c0 + v * c1 + w * c2);
         }
         r.owner = r.own;
         DomainEdges<4, T> at = domain_edges<T>(sides, u, v, w, U, V);
@@ -136,14 +197,15 @@ private:
                 at.on[k],
                 [&] {
                     bool const reversed = word >> (kReversed + k) & 1;
-                    return on_edge<T>(read(k, 1), read(k, 2),
-                                      reversed ? T(T(1) - at.t[k]) : at.t[k]);
+                    return place(
+                        k, 1,
+                        on_edge<T>(read(k, 1), read(k, 2), reversed ? T(T(1) - at.t[k]) : at.t[k]));
                 },
                 r.owner);
         for (int k : loop<T>(sides)) {
             mask_of<T> const corner = at.on[k] & at.on[(k + sides - 1) % sides];
             r.owner = when(
-                corner, [&] { return read(k, 3); }, r.owner);
+                corner, [&] { return place(k, 2, read(k, 3)); }, r.owner);
         }
         return r;
     }
@@ -168,19 +230,23 @@ struct DisplacementEpilog {
 
     std::vector<ResourceInfo> resources() const
     {
-        if (!height.image.bound()) return {};
-        return {height.image.info(), coordinates.corners.info(), coordinates.patches.info()};
+        if (!height.is_image()) return {};
+        return {height.info(), coordinates.corners.info(), coordinates.patches.info()};
     }
 
     template <class T>
     DisplacedVertex<T> operator()(DomainInput<T> const& in, SurfacePoint<T> const& s) const
     {
-        float2<T> const origin(T(0), T(0));
-        OwnedCoordinates::Pair<T> c{origin, origin};
-        if (height.image.bound()) c = coordinates.template operator()<T>(in);
-        T const h = T(scale) * height.template operator()<T>(s.position, c.owner);
+        float2<T> own(T(0), T(0));
+        TexelPlace<T> owner{own, own};
+        if (height.is_image()) {
+            OwnedCoordinates::Pair<T> const c = coordinates.template operator()<T>(in);
+            own = c.own.whole + c.own.part;
+            owner = c.owner;
+        }
+        T const h = T(scale) * height.template operator()<T>(s.position, owner);
         float3<T> const displaced = s.position + h * s.normal;
-        return {transform(view_projection, displaced), s.normal, s.position, c.own};
+        return {transform(view_projection, displaced), s.normal, s.position, own};
     }
 };
 

@@ -25,7 +25,8 @@ public:
     /// \param scale  displacement at full height, object space; negative is inwards
     static Displacement studs(float period, float scale);
     /// An image on the texture coordinates of the file's mesh. Throws Error if it has none.
-    Displacement(Topology const& topology, HeightImage const& image, float scale);
+    Displacement(Topology const& topology, HeightImage image, float scale,
+                 HeightWrap wrap = HeightWrap::Repeat);
     Displacement(Displacement&&) = default;
 
     HeightMap height_map() const;
@@ -38,11 +39,24 @@ public:
     /// The first of a unit's four corners among them.
     std::uint32_t first_corner(ControlMesh const& mesh, PatchPlace const& place) const;
 
+    /// A point of a patch, and a direction to leave it in.
+    struct Ray {
+        glm::dvec2 domain, step;   ///< (u, v), and what a unit of the way adds to it
+        glm::dvec3 point, tangent; ///< of the smooth surface, and what it adds to that
+    };
+    /// How fast the displacement grows along a unit of the way, as the ray begins: in an image in
+    /// the patch's own coordinates, towards the side that it leaves to where the height has a bend.
+    double slope(ControlMesh const& mesh, PatchPlace const& place, Ray const& ray) const;
+
 private:
     Displacement() = default;
+    double image_slope(ControlMesh const& mesh, PatchPlace const& place, Ray const& ray) const;
+    double studs_slope(Ray const& ray) const;
+
     float scale_ = 0, reach_ = 0, frequency_ = 1;
-    int width_ = 0, height_ = 0;
-    std::vector<float> texels_, corners_;
+    HeightImage image_;
+    HeightWrap wrap_ = HeightWrap::Repeat;
+    std::vector<float> corners_;
     std::vector<std::uint32_t> split_start_; // of a face that is no quad: its quads' corners
 };
 

@@ -44,11 +44,11 @@ ControlMesh catmull_clark_mesh(Topology const& topology, Sharpness const& sharpn
         auto const at = [&](HalfEdge h) { return mesh.coordinates[mesh.face_coordinates[h]]; };
         for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
             std::uint32_t const f = topology.face_of(h);
-            glm::vec2 center(0);
+            glm::dvec2 center(0);
             for (HalfEdge k = mesh.face_start[f]; k < mesh.face_start[f + 1]; ++k) center += at(k);
-            center /= float(mesh.face(f).size());
-            for (glm::vec2 c : {at(h), (at(h) + at(topology.next(h))) / 2.0f, center,
-                                (at(topology.previous(h)) + at(h)) / 2.0f}) {
+            center /= double(mesh.face(f).size());
+            for (glm::dvec2 c : {at(h), (at(h) + at(topology.next(h))) / 2.0, center,
+                                 (at(topology.previous(h)) + at(h)) / 2.0}) {
                 out.face_coordinates.push_back(std::uint32_t(out.coordinates.size()));
                 out.coordinates.push_back(c);
             }

@@ -55,7 +55,7 @@ struct ControlMesh {
     std::vector<glm::vec3> positions;
     std::vector<std::uint32_t> face_start{0};    ///< faces + 1 offsets into face_vertices
     std::vector<std::uint32_t> face_vertices;    ///< counter-clockwise, from 0
-    std::vector<glm::vec2> coordinates;          ///< texture coordinates, v upwards
+    std::vector<glm::dvec2> coordinates;         ///< texture coordinates, v upwards
     std::vector<std::uint32_t> face_coordinates; ///< of each face corner; empty: there are none
     std::vector<Crease> creases;
     std::vector<Corner> corners;

@@ -20,8 +20,8 @@ template <class View> struct BumpedView {
 
     std::vector<ResourceInfo> resources() const
     {
-        if (!height.image.bound()) return {};
-        return {height.image.info()};
+        if (!height.is_image()) return {};
+        return {height.info()};
     }
 
     template <class T>
@@ -33,7 +33,7 @@ template <class View> struct BumpedView {
         float2<T> const cx(ddx(in.coordinates.x), ddx(in.coordinates.y));
         float2<T> const cy(ddy(in.coordinates.x), ddy(in.coordinates.y));
         auto const at = [&](float3<T> const& base, float2<T> const& coordinates) -> T {
-            return height.template operator()<T>(base, coordinates);
+            return height.template operator()<T>(base, {{T(0), T(0)}, coordinates});
         };
         T const h = at(in.base, in.coordinates);
         T const hx = at(in.base + dx, in.coordinates + cx) - h;

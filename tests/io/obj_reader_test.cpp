@@ -249,8 +249,8 @@ TEST(ObjReader, ReadsTextureCoordinatesOfFaceCorners)
                                  "a.obj");
     EXPECT_TRUE(obj.warnings.empty());
     ASSERT_EQ(obj.mesh.coordinates.size(), 3u);
-    EXPECT_EQ(obj.mesh.coordinates[0], glm::vec2(0, 0.25f));
-    EXPECT_EQ(obj.mesh.coordinates[2], glm::vec2(0.75f, -10));
+    EXPECT_EQ(obj.mesh.coordinates[0], glm::dvec2(0, 0.25));
+    EXPECT_EQ(obj.mesh.coordinates[2], glm::dvec2(0.75, -10));
     EXPECT_EQ(obj.mesh.face_coordinates, (std::vector<std::uint32_t>{0, 1, 2, 0}));
 }
 
@@ -286,8 +286,8 @@ TEST(ObjReader, ATextureCoordinateOfOneNumberHasVZero)
         read_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0.5\nvt 1 0.25\nf 1/1 2/2 3/1\n", "a");
     EXPECT_TRUE(obj.warnings.empty());
     ASSERT_EQ(obj.mesh.coordinates.size(), 2u);
-    EXPECT_EQ(obj.mesh.coordinates[0], glm::vec2(0.5f, 0));
-    EXPECT_EQ(obj.mesh.coordinates[1], glm::vec2(1, 0.25f));
+    EXPECT_EQ(obj.mesh.coordinates[0], glm::dvec2(0.5, 0));
+    EXPECT_EQ(obj.mesh.coordinates[1], glm::dvec2(1, 0.25));
 }
 
 // Without the line after it, the mesh would lack a vertex or a face.

@@ -23,7 +23,7 @@ inline void add_charts(ControlMesh& mesh)
     }
 }
 
-/// A sampler's weights have 8 bits: only in a large image does a coordinate's last bit show often.
+/// The larger, the oftener a coordinate's last bit shows.
 inline HeightImage noise(int size)
 {
     HeightImage image{{}, size, size};
