@@ -1,0 +1,309 @@
+// Gaps G4 and G5: draws that follow other draws, and very many patches of which few are kept.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/emu/suite_facts/patches.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <set>
+
+namespace tessemu::test {
+namespace {
+
+using D = TessellatorDomain;
+using P = Partitioning;
+using O = OutputPrimitive;
+
+TessFactors uniform(float f)
+{
+    return {f, f, f, f, f, f};
+}
+
+// What a draw leaves: what it counted, and what it streamed out, drew or showed.
+struct Left {
+    DrawStatistics statistics;
+    std::vector<std::byte> bytes;
+
+    friend bool operator==(Left const&, Left const&) = default;
+};
+void append(std::vector<std::byte>& to, void const* from, std::size_t bytes)
+{
+    auto const* const b = static_cast<std::byte const*>(from);
+    to.insert(to.end(), b, b + bytes);
+}
+
+enum class Look { StreamOut, Raster, RasterAndVisit, CountsOnly };
+
+// A draw that can be repeated: its pipeline is made once.
+class RepeatedDraw {
+public:
+    /// \param set  gives shaders, state and vertices to a scene
+    template <class Set>
+    RepeatedDraw(std::string name, Look look, Set const& set)
+        : name_(std::move(name)),
+          look_(look),
+          scene_(std::make_unique<PatchScene>(24, 24))
+    {
+        set(*scene_);
+        if (look == Look::StreamOut) scene_->stream_out(0, 8, 1 << 17);
+        scene_->call.set_vertices(scene_->vertices, 8);
+        scene_->call.vertex_count = std::uint32_t(scene_->vertices.size() / 8);
+        pipeline_ = std::make_unique<GraphicsPipeline>(scene_->desc);
+    }
+    Left draw(DrawMemory& memory, ThreadPool const& threads) const
+    {
+        Left left;
+        PatchScene& s = *scene_;
+        s.clear();
+        s.buffer.filled = 0;
+        DrawOptions options = s.options;
+        options.memory = &memory;
+        bool const raster = look_ == Look::Raster || look_ == Look::RasterAndVisit;
+        PatchVisitor visit;
+        if (look_ == Look::RasterAndVisit)
+            visit = [&](ShadedPatch const& p) {
+                append(left.bytes, &p.primitive_id, sizeof p.primitive_id);
+                for (std::size_t k = 0; k < 8; ++k)
+                    append(left.bytes, p.outputs + k * p.stride, 4 * p.points->patch.points());
+            };
+        left.statistics = tessemu::draw(*pipeline_, s.call, raster ? &s.target : nullptr, visit,
+                                        threads, options);
+        append(left.bytes, s.streamed_bytes.data(), s.buffer.filled);
+        for (int y = 0; raster && y < s.height; ++y) {
+            append(left.bytes, s.color.texel(0, y), s.color.row_bytes());
+            append(left.bytes, s.depth.codes() + s.depth.index(0, y), std::size_t(4 * s.width));
+        }
+        return left;
+    }
+    std::string const& name() const { return name_; }
+
+private:
+    std::string name_;
+    Look look_;
+    std::unique_ptr<PatchScene> scene_;
+    std::unique_ptr<GraphicsPipeline> pipeline_;
+};
+
+void add_vertices(Scene& s, int count)
+{
+    for (int i = 0; i < count; ++i)
+        s.add(float(2 + 5 * i % 17), float(3 + 7 * i % 19), 0.25f + float(i % 8) / 16, 1,
+              {float(i + 1), 2, 3, 4});
+}
+
+template <D domain>
+void add_patches(std::vector<RepeatedDraw>& to, P partitioning, int points, bool as_points,
+                 Look look)
+{
+    std::string const name = std::string(name_of(domain)) + " " +
+                             std::string(name_of(partitioning)) + " of " + std::to_string(points) +
+                             (as_points ? " as points" : "") + ", look " +
+                             std::to_string(int(look));
+    to.emplace_back(name, look, [&](PatchScene& s) {
+        TessFactors mixed{1.5f, 4.2f, 2, 3.7f, 2.6f, 5};
+        s.use_patches(PatchHull<domain>{points, {uniform(3.3f), mixed, uniform(0), uniform(1)}},
+                      PatchDomain<domain>{0.75f});
+        s.desc.partitioning = partitioning;
+        if (as_points) s.desc.output_primitive = O::Point;
+        add_vertices(s, 10 * points + 1);
+    });
+}
+
+// Every domain, partitioning and patch size, every topology without tessellation, in every way
+// that a draw's results are looked at.
+std::vector<RepeatedDraw> draws()
+{
+    std::vector<RepeatedDraw> all;
+    for (Look look : {Look::StreamOut, Look::Raster, Look::RasterAndVisit, Look::CountsOnly}) {
+        for (P p : {P::Integer, P::Pow2, P::FractionalOdd, P::FractionalEven}) {
+            int const points = p == P::Integer ? 1 : p == P::Pow2 ? 4 : 32;
+            add_patches<D::Quad>(all, p, points, false, look);
+            add_patches<D::Tri>(all, p, points == 4 ? 3 : points, false, look);
+            add_patches<D::Isoline>(all, p, points, false, look);
+        }
+        for (int points : {1, 4, 32}) // of one pattern
+            add_patches<D::Quad>(all, P::FractionalOdd, points, true, look);
+        add_patches<D::Tri>(all, P::FractionalOdd, 3, true, look);
+        add_patches<D::Isoline>(all, P::Integer, 2, true, look);
+        for (auto t : {PrimitiveTopology::PointList, PrimitiveTopology::LineList,
+                       PrimitiveTopology::LineStrip, PrimitiveTopology::TriangleList,
+                       PrimitiveTopology::TriangleStrip})
+            all.emplace_back("topology " + std::to_string(int(t)) + ", look " +
+                                 std::to_string(int(look)),
+                             look, [&](PatchScene& s) {
+                                 s.call.topology = t;
+                                 add_vertices(s, 11);
+                             });
+    }
+    return all;
+}
+
+// A sequence of 0 to n - 1 in which each number follows each, itself too, once around.
+std::vector<std::size_t> every_pair(std::size_t n)
+{
+    std::vector<std::size_t> out;
+    for (std::size_t i = 0; i < n; ++i) {
+        out.push_back(i);
+        for (std::size_t j = i + 1; j < n; ++j) out.insert(out.end(), {i, j});
+    }
+    out.push_back(0);
+    return out;
+}
+
+TEST(DrawAfterDraw, G4ADrawGivesWhatItGivesAloneWhateverWasDrawnBefore)
+{
+    std::vector<RepeatedDraw> const all = draws();
+    ThreadPool const threads(2);
+    std::vector<Left> alone;
+    for (RepeatedDraw const& d : all) {
+        DrawMemory fresh;
+        alone.push_back(d.draw(fresh, threads));
+    }
+    std::set<std::pair<std::size_t, std::size_t>> pairs;
+    DrawMemory memory;
+    std::size_t before = all.size();
+    for (std::size_t i : every_pair(all.size())) {
+        Left const left = all[i].draw(memory, threads);
+        ASSERT_EQ(left.statistics, alone[i].statistics)
+            << all[i].name() << " after "
+            << (before < all.size() ? all[before].name() : std::string("none"));
+        ASSERT_TRUE(left.bytes == alone[i].bytes)
+            << all[i].name() << " after "
+            << (before < all.size() ? all[before].name() : std::string("none"));
+        if (before < all.size()) pairs.emplace(before, i);
+        before = i;
+    }
+    EXPECT_EQ(pairs.size(), all.size() * all.size());
+    // Draws that are the same would prove nothing.
+    std::size_t seen = 0;
+    for (Left const& l : alone) seen += !l.bytes.empty();
+    EXPECT_EQ(seen, all.size() / 4 * 3); // all but those that only count
+    std::size_t different = 0;
+    for (auto l = alone.begin(); l != alone.end(); ++l)
+        different += std::none_of(alone.begin(), l, [&](Left const& o) { return o == *l; });
+    EXPECT_GT(different, all.size() * 9 / 10);
+}
+
+constexpr int kPatches = 1 << 19, kKeptOf = 8, kKept = kPatches / kKeptOf, kSide = 256;
+static_assert(kKept == kSide * kSide);
+
+// Seven patches of eight are culled, each by another edge or another value.
+std::vector<TessFactors> one_of_eight()
+{
+    std::vector<TessFactors> factors(kKeptOf, uniform(1));
+    float const nan = std::numeric_limits<float>::quiet_NaN();
+    float const culling[] = {0, -1, nan, -0.0f, -64, 0, nan};
+    for (std::size_t i = 0; i < 7; ++i) factors[i < 5 ? i : i + 1][i % 4] = culling[i];
+    return factors;
+}
+constexpr int kKeptPlace = 5;
+
+// Kept patch k covers pixel k.
+void add_pixels(Scene& s, int patches)
+{
+    for (int i = 0; i < patches; ++i) {
+        int const k = i / kKeptOf % kKept;
+        s.add(float(k % kSide), float(k / kSide + 1), 0.5f, 1, {float(i), 0, 0, 0});
+    }
+}
+
+TEST(DrawAfterDraw, G5MostlyCulledPatchesEachReachTheirPixelWithTheirOwnId)
+{
+    std::vector<std::byte> first;
+    for (int threads : {1, 2, 4}) {
+        PatchScene s(kSide, kSide);
+        s.use_patches(PatchHull<D::Quad>{1, one_of_eight()}, PatchDomain<D::Quad>{2.0f / kSide});
+        s.use(ShowPrimitiveId{});
+        s.threads = threads;
+        add_pixels(s, kPatches);
+        PipelineStatistics const p = s.draw().pipeline;
+        EXPECT_EQ(p.HSInvocations, std::uint64_t(kPatches));
+        EXPECT_EQ(p.DSInvocations, std::uint64_t(4 * kKept));
+        EXPECT_EQ(p.CInvocations, std::uint64_t(2 * kKept));
+        for (int k = 0; k < kKept; ++k)
+            ASSERT_EQ(s.at(k % kSide, k / kSide), float(kKeptOf * k + kKeptPlace + 1)) << k;
+
+        s.desc.output_primitive = O::Point;
+        s.stream_out(4, 3, std::size_t(kKept) * 4 * 12);
+        s.draw();
+        auto const points = s.streamed();
+        ASSERT_EQ(points.size(), std::size_t(4 * kKept));
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            auto const id = float(std::size_t(kKeptOf) * (i / 4) + kKeptPlace);
+            ASSERT_EQ(points[i], (std::vector<float>{id, id, id})) << i;
+        }
+        if (first.empty()) first = s.streamed_bytes;
+        EXPECT_TRUE(s.streamed_bytes == first) << threads;
+    }
+}
+
+TEST(DrawAfterDraw, G5InstancesOfMostlyCulledPatchesRestartTheId)
+{
+    constexpr int kInstances = 8, kEach = kPatches / kInstances;
+    for (int threads : {1, 2, 4}) {
+        PatchScene s;
+        s.use_patches(PatchHull<D::Quad>{1, one_of_eight()});
+        s.desc.output_primitive = O::Point;
+        s.threads = threads;
+        s.call.instance_count = kInstances;
+        add_pixels(s, kEach);
+        s.stream_out(4, 3, std::size_t(kKept) * 4 * 12);
+        s.draw();
+        auto const points = s.streamed();
+        ASSERT_EQ(points.size(), std::size_t(4 * kKept));
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            std::size_t const kept = i / 4 % std::size_t(kEach / kKeptOf);
+            auto const id = float(std::size_t(kKeptOf) * kept + kKeptPlace);
+            ASSERT_EQ(points[i], (std::vector<float>{id, id, id})) << i;
+        }
+    }
+}
+
+// Factors from the control point, which is an instance's own.
+struct FactorOfInstance : PatchHull<D::Quad> {
+    template <class T>
+    std::array<T, 6> tess_factors(PatchInput, ControlPoints<SceneVertex<T>> const& in,
+                                  ControlPoints<SceneVertex<T>> const&,
+                                  ControlPoints<Constant<T>> const&) const
+    {
+        T const f = in[0].value.y;
+        return {f, f, f, f, f, f};
+    }
+};
+
+TEST(DrawAfterDraw, G5HalfAMillionInstancesMostlyCulledAllReachTheirPixel)
+{
+    std::vector<float> instances; // position, then the value
+    for (int i = 0; i < kPatches; ++i) {
+        int const k = i / kKeptOf;
+        instances.insert(instances.end(),
+                         {2 * (float(k % kSide) + 0.5f) / kSide - 1,
+                          1 - 2 * (float(k / kSide) + 0.5f) / kSide, 0.5f, 1, float(i % 251 + 1),
+                          i % kKeptOf == kKeptPlace ? 1.0f : 0.0f, 0, 0});
+    }
+    for (int threads : {1, 2}) {
+        PatchScene s(kSide, kSide);
+        s.use_patches(PatchHull<D::Quad>{});
+        s.desc.hull_shader = bind_hull_shader(FactorOfInstance{}, {});
+        s.desc.output_primitive = O::Point;
+        s.desc.pixel_shader = bind_pixel_shader(ShowValue{}, {});
+        s.call.set_vertices(instances, 8);
+        for (InputElement& e : s.call.layout) e.per_instance = true;
+        s.call.vertex_count = 1;
+        s.call.instance_count = kPatches;
+        DrawStatistics const d =
+            draw(GraphicsPipeline(s.desc), s.call, &s.target, {}, ThreadPool(threads));
+        EXPECT_EQ(d.pipeline.DSInvocations, std::uint64_t(4 * kKept));
+        for (int k = 0; k < kKept; ++k) {
+            auto const c = s.color.load(k % kSide, k / kSide);
+            int const i = kKeptOf * k + kKeptPlace;
+            ASSERT_EQ(c, (std::array<float, 4>{0, 0, float(i % 251 + 1), 0})) << k;
+        }
+    }
+}
+
+} // namespace
+} // namespace tessemu::test
