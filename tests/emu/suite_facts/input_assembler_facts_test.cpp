@@ -59,6 +59,15 @@ std::vector<std::uint32_t> assembled(DrawCall const& call)
     return out;
 }
 
+TEST(InputAssemblerFacts, S17TheAllOnesIndexCutsAListTooWhichLeavesOneTriangleOfThree)
+{
+    std::vector<std::uint32_t> const indices{0, 1, ~0u, 9, ~0u, ~0u, 2000, 3000, 4000};
+    DrawCall call;
+    call.topology = PrimitiveTopology::TriangleList;
+    call.indices = std::span<std::uint32_t const>(indices);
+    EXPECT_EQ(assembled(call), (std::vector<std::uint32_t>{2000, 3000, 4000}));
+}
+
 TEST(InputAssemblerFacts, S18G10IndicesStartWhereTheBufferDoesAndPastItsEndTheyAreZero)
 {
     using V = std::vector<std::uint32_t>;
@@ -257,6 +266,10 @@ TEST(InputAssemblerFacts, S23ElementsOfTenTwoAndOneComponentsAndBlueFirstDecodeT
             EXPECT_EQ(bits(seen[i]), wanted[i]) << info(f).name << " " << i;
     };
     expect_words(Format::R10G10B10A2_UINT, {0x321, 0x150, 0x076, 2});
+    expect_words(Format::R32G32B32_UINT, {kBytes[0], kBytes[1], kBytes[2], 1});
+    expect_words(Format::R32G32B32_SINT, {kBytes[0], kBytes[1], kBytes[2], 1});
+    expect_words(Format::R32G32_UINT, {kBytes[0], kBytes[1], 0, 1});
+    expect_words(Format::R32G32_SINT, {kBytes[0], kBytes[1], 0, 1});
     expect_words(Format::R16G16_UINT, {0x4321, 0x8765, 0, 1});
     expect_words(Format::R16G16_SINT, {0x4321, 0xffff8765, 0, 1});
     expect_words(Format::R16_UINT, {0x4321, 0, 0, 1});

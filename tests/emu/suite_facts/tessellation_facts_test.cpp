@@ -252,14 +252,36 @@ template <int n> struct ClippedDomain {
         return o;
     }
 };
-// Without distances of its own.
+// Without distances of its own; its last scalar would be one of the vertex shader's.
 struct UnclippedDomain : ClippedDomain<1> {
     template <class T> using Output = SceneVertex<T>;
     template <class T>
     SceneVertex<T> operator()(DomainInput<T> const& in, ControlPoints<OneDistance<T>> const&,
                               ControlPoints<Constant<T>> const&) const
     {
-        return {{T(2) * in.u - T(1), T(1) - T(2) * in.v, T(0.5f), T(1)}, {T(1), T(1), T(1), T(1)}};
+        return {{T(2) * in.u - T(1), T(1) - T(2) * in.v, T(0.5f), T(1)}, {T(1), T(1), T(1), T(-1)}};
+    }
+};
+
+// Two clip distances in front, then three cull distances: the last is negative for u > `keep`.
+template <class T> struct Culled {
+    float4<T> position, value;
+    std::array<T, 5> distances;
+    static constexpr int kClipDistances = 2, kCullDistances = 3;
+    static constexpr auto signature()
+    {
+        return std::tuple{&Culled::position, &Culled::value, &Culled::distances};
+    }
+};
+struct CulledDomain : ClippedDomain<1> {
+    template <class T> using Output = Culled<T>;
+    template <class T>
+    Culled<T> operator()(DomainInput<T> const& in, ControlPoints<OneDistance<T>> const&,
+                         ControlPoints<Constant<T>> const&) const
+    {
+        return {{T(2) * in.u - T(1), T(1) - T(2) * in.v, T(0.5f), T(1)},
+                {T(1), T(1), T(1), T(1)},
+                {T(1), T(1), T(1), T(1), T(keep) - in.u}};
     }
 };
 
@@ -277,7 +299,7 @@ template <class Domain> int covered_by(Domain const& domain, float factor)
     return s.covered();
 }
 
-TEST(TessellationFacts, S7G7OnlyTheDomainShadersClipDistancesClip)
+TEST(TessellationFacts, S7G7OnlyTheDomainShadersClipAndCullDistancesCount)
 {
     for (float factor : {1.0f, 2.0f}) {
         EXPECT_EQ(covered_by(UnclippedDomain{}, factor), 16 * 16);
@@ -286,6 +308,9 @@ TEST(TessellationFacts, S7G7OnlyTheDomainShadersClipDistancesClip)
         EXPECT_EQ(covered_by(ClippedDomain<1>{0.5f}, factor), 8 * 16);
         // The fifth of five, in a second register.
         EXPECT_EQ(covered_by(ClippedDomain<5>{0.25f}, factor), 4 * 16);
+        // Culled are triangles that have u > keep all over: those of the right half at factor 2.
+        EXPECT_EQ(covered_by(CulledDomain{{-1}}, factor), 0);
+        EXPECT_EQ(covered_by(CulledDomain{{0.25f}}, factor), factor == 1 ? 16 * 16 : 8 * 16);
     }
 }
 
