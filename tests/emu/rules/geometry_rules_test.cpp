@@ -222,8 +222,8 @@ TEST(StreamOutput, R87R89GapsStridesAndLimits)
     Scene s;
     s.call.topology = PrimitiveTopology::LineStrip;
     // y, a gap of two, x; into 24 bytes a vertex.
-    s.desc.stream_output =
-        StreamOutputDesc{{{0, 5, 1, 2}, {0, -1, 2, 2}, {0, 4, 1, 2}}, {{}, {}, 24, {}}, -1};
+    s.desc.stream_output = StreamOutputDesc{
+        {{0, 5, 1, 2}, {0, -1, 2, 2}, {0, 4, 1, 2}}, {std::nullopt, std::nullopt, 24}, -1};
     std::vector<std::byte> memory(1000, std::byte{0xaa});
     StreamOutputBuffer buffers[3] = {{}, {}, {memory, 0}};
     s.options.stream_output = buffers;
