@@ -35,7 +35,7 @@ template <class Index> void draw_two_strips()
     s.clear({0.25f, 0.5f, 0.75f, 1});
     std::uint32_t const untouched = word_at(s, 0, 0);
     s.call.indices = std::span<Index const>(indices);
-    s.draw();
+    EXPECT_EQ(s.draw().pipeline.IAPrimitives, 4u);
     for (int y = 0; y < 480; ++y)
         for (int x = 0; x < 640; ++x)
             ASSERT_EQ(word_at(s, x, y), x < 240   ? 0xffffff00u
