@@ -15,6 +15,11 @@ template <class T> struct Constant {
     static constexpr auto signature() { return std::tuple{&Constant::value}; }
 };
 
+inline TessFactors uniform(float f)
+{
+    return {f, f, f, f, f, f};
+}
+
 /// Hands its control points on. The factors of patch i are number i of the list, from its start
 /// again at its end; the patch constant is (SV_PrimitiveID, 0, 0, 0).
 template <TessellatorDomain D> struct PatchHull {
