@@ -14,6 +14,7 @@
 //             ControlPoints<PatchConstant<T>> const&) const;
 //     };
 //
+// One that reads the tess factors takes them as a fourth argument, TessFactorInput<T> const&.
 // One whose Output has no position yet is finished by an epilog: the end of the shader, compiled
 // apart from it (as drivers do), so that a surface compiled once serves every kind of vertex:
 //
@@ -31,6 +32,7 @@
 #include "emu/tessellator.h"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace tessemu {
 
@@ -40,6 +42,16 @@ template <class T> struct DomainInput {
     T u, v, w;
     std::int32_t primitive_id = 0;
 };
+
+/// A tess factor as an input of the domain shader.
+template <class T> struct TessFactor {
+    T value;
+    static constexpr auto signature() { return std::tuple{&TessFactor::value}; }
+};
+/// SV_TessFactor, then SV_InsideTessFactor, as many as the domain has, in the order of TessFactors:
+/// what the hull shader wrote, neither clamped nor rounded, but for a maximum that it declares
+/// (I-28). Each [] is a counted fetch.
+template <class T> using TessFactorInput = ControlPoints<TessFactor<T>>;
 
 class DomainEpilogProgram;
 using DomainEpilog = BoundShader<DomainEpilogProgram>;
@@ -55,7 +67,8 @@ struct DomainBatch {
     std::size_t points;
     float* outputs; ///< out: component k of point i at [k * stride + i], whole groups are written
     std::size_t stride;
-    DomainEpilog const* epilog = nullptr; ///< turns the outputs into others in place
+    DomainEpilog const* epilog = nullptr;      ///< turns the outputs into others in place
+    TessFactors const* tess_factors = nullptr; ///< null where the shader reads none
 };
 
 /// The end of a domain shader.
@@ -75,6 +88,7 @@ public:
     virtual int control_points() const = 0;
     virtual int control_point_floats() const = 0;
     virtual int patch_constant_floats() const = 0;
+    virtual bool reads_tess_factors() const { return false; }
     virtual OutputLayout output() const = 0;
     int output_floats() const { return output().floats; }
     /// Runs a patch, inside a StageScope that the caller holds open over many patches.
@@ -106,6 +120,10 @@ class DomainProgramOn final : public CompiledProgram<DomainProgram, Shader> {
     using Point = typename Shader::template ControlPoint<T>;
     using Constant = typename Shader::template PatchConstant<T>;
     using Output = typename Shader::template Output<T>;
+    using Factors = TessFactorInput<T>;
+    static constexpr bool kReadsFactors =
+        std::is_invocable_v<Shader const&, DomainInput<T> const&, ControlPoints<Point> const&,
+                            ControlPoints<Constant> const&, Factors const&>;
     static constexpr std::size_t kBlock = 256; // points that an epilog finds in the nearest cache
 
 public:
@@ -117,6 +135,7 @@ public:
     }
     int control_point_floats() const override { return scalar_count<Point>(); }
     int patch_constant_floats() const override { return scalar_count<Constant>(); }
+    bool reads_tess_factors() const override { return kReadsFactors; }
     OutputLayout output() const override
     {
         return output_layout<typename Shader::template Output<float>>();
@@ -147,12 +166,19 @@ private:
     {
         ControlPoints<Point> const points(b.control_points, b.control_point_count);
         ControlPoints<Constant> const constants(b.patch_constants, b.patch_constant_count);
+        Factors const factors(kReadsFactors ? b.tess_factors->data() : nullptr,
+                              tess_factor_count(Shader::kDomain));
+        auto const shade = [&](DomainInput<T> const& in) -> Output {
+            if constexpr (kReadsFactors)
+                return shader(in, points, constants, factors);
+            else
+                return shader(in, points, constants);
+        };
         for (std::size_t block = 0; block < b.points; block += kBlock) {
             std::size_t const end = std::min(block + kBlock, b.points);
             for (std::size_t first = block; first < end; first += N) {
                 detail::begin_domain_group<T>(end - first);
-                Output const out =
-                    shader(detail::domain_input<T, Shader::kDomain>(b, first), points, constants);
+                Output const out = shade(detail::domain_input<T, Shader::kDomain>(b, first));
                 float* at = b.outputs + first;
                 for_each_scalar(out, [&](auto const& s) {
                     lanes_value(s).store(at);
@@ -166,6 +192,10 @@ private:
         counters.input_touched += points.touched();
         counters.constant_fetches += constants.fetches();
         counters.constant_touched += constants.touched();
+        if constexpr (kReadsFactors) {
+            counters.factor_fetches += factors.fetches();
+            counters.factor_touched += factors.touched();
+        }
     }
 };
 

@@ -100,6 +100,10 @@ struct Report {
         add_fetch(s, "patch_constants", ResourceKind::PatchConstant,
                   d.counters.domain.constant_fetches, d.counters.domain.constant_touched,
                   constant_bytes);
+        if (d.counters.domain.factor_fetches)
+            add_fetch(s, "tess_factors", ResourceKind::PatchConstant,
+                      d.counters.domain.factor_fetches, d.counters.domain.factor_touched,
+                      sizeof(float));
         d.front_end.domain_buffers().report(d.counters.domain, s);
         s.output_bytes = d.counters.domain.invocations *
                          std::uint64_t(d.pipeline.domain_output().floats) * sizeof(float);

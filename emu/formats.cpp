@@ -12,33 +12,59 @@ namespace tessemu {
 
 namespace {
 
-constexpr FormatInfo kFormats[] = {
-    {"R32G32B32A32_FLOAT", FormatType::Float, 4, 16},
-    {"R32G32B32A32_UINT", FormatType::Uint, 4, 16},
-    {"R32G32B32A32_SINT", FormatType::Sint, 4, 16},
-    {"R32G32B32_FLOAT", FormatType::Float, 3, 12},
-    {"R32G32_FLOAT", FormatType::Float, 2, 8},
-    {"R32_FLOAT", FormatType::Float, 1, 4},
-    {"R32_UINT", FormatType::Uint, 1, 4},
-    {"R32_SINT", FormatType::Sint, 1, 4},
-    {"R16G16B16A16_FLOAT", FormatType::Float, 4, 8},
-    {"R16G16B16A16_UNORM", FormatType::Unorm, 4, 8},
-    {"R16G16B16A16_SNORM", FormatType::Snorm, 4, 8},
-    {"R16G16B16A16_UINT", FormatType::Uint, 4, 8},
-    {"R16G16B16A16_SINT", FormatType::Sint, 4, 8},
-    {"R16G16_FLOAT", FormatType::Float, 2, 4},
-    {"R11G11B10_FLOAT", FormatType::Float, 3, 4},
-    {"R8G8B8A8_UNORM", FormatType::Unorm, 4, 4},
-    {"R8G8B8A8_UNORM_SRGB", FormatType::Srgb, 4, 4},
-    {"R8G8B8A8_SNORM", FormatType::Snorm, 4, 4},
-    {"R8G8B8A8_UINT", FormatType::Uint, 4, 4},
-    {"R16_UNORM", FormatType::Unorm, 1, 2},
-    {"R8_UNORM", FormatType::Unorm, 1, 1},
-    {"D16_UNORM", FormatType::Depth, 1, 2},
-    {"D24_UNORM_S8_UINT", FormatType::Depth, 1, 4},
-    {"D32_FLOAT", FormatType::Depth, 1, 4},
-    {"D32_FLOAT_S8X24_UINT", FormatType::Depth, 1, 8},
+constexpr FormatInfo kTable[] = {
+    {"R32G32B32A32_FLOAT", FormatType::Float, 4, 16, {32, 32, 32, 32}},
+    {"R32G32B32A32_UINT", FormatType::Uint, 4, 16, {32, 32, 32, 32}},
+    {"R32G32B32A32_SINT", FormatType::Sint, 4, 16, {32, 32, 32, 32}},
+    {"R32G32B32_FLOAT", FormatType::Float, 3, 12, {32, 32, 32}},
+    {"R32G32B32_UINT", FormatType::Uint, 3, 12, {32, 32, 32}},
+    {"R32G32B32_SINT", FormatType::Sint, 3, 12, {32, 32, 32}},
+    {"R32G32_FLOAT", FormatType::Float, 2, 8, {32, 32}},
+    {"R32G32_UINT", FormatType::Uint, 2, 8, {32, 32}},
+    {"R32G32_SINT", FormatType::Sint, 2, 8, {32, 32}},
+    {"R32_FLOAT", FormatType::Float, 1, 4, {32}},
+    {"R32_UINT", FormatType::Uint, 1, 4, {32}},
+    {"R32_SINT", FormatType::Sint, 1, 4, {32}},
+    {"R16G16B16A16_FLOAT", FormatType::Float, 4, 8, {16, 16, 16, 16}},
+    {"R16G16B16A16_UNORM", FormatType::Unorm, 4, 8, {16, 16, 16, 16}},
+    {"R16G16B16A16_SNORM", FormatType::Snorm, 4, 8, {16, 16, 16, 16}},
+    {"R16G16B16A16_UINT", FormatType::Uint, 4, 8, {16, 16, 16, 16}},
+    {"R16G16B16A16_SINT", FormatType::Sint, 4, 8, {16, 16, 16, 16}},
+    {"R16G16_FLOAT", FormatType::Float, 2, 4, {16, 16}},
+    {"R16G16_UNORM", FormatType::Unorm, 2, 4, {16, 16}},
+    {"R16G16_SNORM", FormatType::Snorm, 2, 4, {16, 16}},
+    {"R16G16_UINT", FormatType::Uint, 2, 4, {16, 16}},
+    {"R16G16_SINT", FormatType::Sint, 2, 4, {16, 16}},
+    {"R16_FLOAT", FormatType::Float, 1, 2, {16}},
+    {"R16_UNORM", FormatType::Unorm, 1, 2, {16}},
+    {"R16_SNORM", FormatType::Snorm, 1, 2, {16}},
+    {"R16_UINT", FormatType::Uint, 1, 2, {16}},
+    {"R16_SINT", FormatType::Sint, 1, 2, {16}},
+    {"R11G11B10_FLOAT", FormatType::Float, 3, 4, {11, 11, 10}},
+    {"R10G10B10A2_UNORM", FormatType::Unorm, 4, 4, {10, 10, 10, 2}},
+    {"R10G10B10A2_UINT", FormatType::Uint, 4, 4, {10, 10, 10, 2}},
+    {"R8G8B8A8_UNORM", FormatType::Unorm, 4, 4, {8, 8, 8, 8}},
+    {"R8G8B8A8_UNORM_SRGB", FormatType::Srgb, 4, 4, {8, 8, 8, 8}},
+    {"R8G8B8A8_SNORM", FormatType::Snorm, 4, 4, {8, 8, 8, 8}},
+    {"R8G8B8A8_UINT", FormatType::Uint, 4, 4, {8, 8, 8, 8}},
+    {"R8G8B8A8_SINT", FormatType::Sint, 4, 4, {8, 8, 8, 8}},
+    {"B8G8R8A8_UNORM", FormatType::Unorm, 4, 4, {8, 8, 8, 8}, true},
+    {"B8G8R8A8_UNORM_SRGB", FormatType::Srgb, 4, 4, {8, 8, 8, 8}, true},
+    {"B8G8R8X8_UNORM", FormatType::Unorm, 3, 4, {8, 8, 8}, true},
+    {"R8G8_UNORM", FormatType::Unorm, 2, 2, {8, 8}},
+    {"R8G8_SNORM", FormatType::Snorm, 2, 2, {8, 8}},
+    {"R8G8_UINT", FormatType::Uint, 2, 2, {8, 8}},
+    {"R8G8_SINT", FormatType::Sint, 2, 2, {8, 8}},
+    {"R8_UNORM", FormatType::Unorm, 1, 1, {8}},
+    {"R8_SNORM", FormatType::Snorm, 1, 1, {8}},
+    {"R8_UINT", FormatType::Uint, 1, 1, {8}},
+    {"R8_SINT", FormatType::Sint, 1, 1, {8}},
+    {"D16_UNORM", FormatType::Depth, 1, 2, {16}},
+    {"D24_UNORM_S8_UINT", FormatType::Depth, 1, 4, {24}},
+    {"D32_FLOAT", FormatType::Depth, 1, 4, {32}},
+    {"D32_FLOAT_S8X24_UINT", FormatType::Depth, 1, 8, {32}},
 };
+static_assert(std::size(kTable) == kFormats);
 
 constexpr std::uint32_t kSign = 0x80000000u, kInfinity = 0x7f800000u;
 
@@ -90,30 +116,72 @@ SrgbTables const& srgb_tables()
     return tables;
 }
 
-template <class I> I read(std::byte const* at, int i)
+// An element with components of less than 32 bits, as one number.
+std::uint64_t load_word(FormatInfo const& f, std::byte const* e)
 {
-    I v;
-    std::memcpy(&v, at + std::size_t(i) * sizeof(I), sizeof(I));
-    return v;
+    std::uint64_t word = 0;
+    std::memcpy(&word, e, f.bytes);
+    return word;
 }
-template <class I> void write(std::byte* at, int i, I v)
+
+// The register of component i.
+std::size_t place(FormatInfo const& f, std::size_t i)
 {
-    std::memcpy(at + std::size_t(i) * sizeof(I), &v, sizeof(I));
+    return f.bgr && i < 3 ? 2 - i : i;
 }
-std::uint32_t clamp_uint(float bits, std::uint32_t limit)
+
+std::int32_t sign_extended(std::uint32_t code, int bits)
 {
-    return std::min(bits_of(bits), limit);
+    return std::int32_t(code << (32 - bits)) >> (32 - bits);
 }
-std::int32_t clamp_sint(float bits, std::int32_t limit)
+
+float from_code(FormatInfo const& f, std::size_t i, std::uint32_t code)
 {
-    return std::clamp(std::bit_cast<std::int32_t>(bits), -limit - 1, limit);
+    int const bits = f.bits[i];
+    switch (f.type) {
+    case FormatType::Float:
+        return bits == 16 ? float_from_half(std::uint16_t(code))
+                          : float_from_small_float(code, 5, bits - 5, false);
+    case FormatType::Srgb:
+        return i < 3 ? linear_from_srgb8(std::uint8_t(code)) : float_from_unorm(code, bits);
+    case FormatType::Snorm:
+        return float_from_snorm(sign_extended(code, bits), bits);
+    case FormatType::Sint:
+        return std::bit_cast<float>(sign_extended(code, bits));
+    case FormatType::Uint:
+        return std::bit_cast<float>(code);
+    default:
+        return float_from_unorm(code, bits);
+    }
+}
+
+// May have bits above the component's.
+std::uint32_t to_code(FormatInfo const& f, std::size_t i, float c)
+{
+    int const bits = f.bits[i];
+    switch (f.type) {
+    case FormatType::Float:
+        return bits == 16 ? half_from_float(c) : small_float_from_float(c, 5, bits - 5, false);
+    case FormatType::Srgb:
+        return i < 3 ? srgb8_from_linear(c) : unorm_from_float(c, bits);
+    case FormatType::Snorm:
+        return std::uint32_t(snorm_from_float(c, bits));
+    case FormatType::Sint: {
+        std::int32_t const most = (1 << (bits - 1)) - 1;
+        return std::uint32_t(std::clamp(std::bit_cast<std::int32_t>(c), -most - 1, most));
+    }
+    case FormatType::Uint:
+        return std::min(bits_of(c), (1u << bits) - 1);
+    default:
+        return unorm_from_float(c, bits);
+    }
 }
 
 } // namespace
 
 FormatInfo const& info(Format format)
 {
-    return kFormats[std::size_t(format)];
+    return kTable[std::size_t(format)];
 }
 
 std::uint32_t small_float_from_float(float value, int exponent_bits, int mantissa_bits,
@@ -229,114 +297,40 @@ std::array<float, 4> decode(Format format, std::byte const* e)
     FormatInfo const& f = info(format);
     bool const integer = f.type == FormatType::Uint || f.type == FormatType::Sint;
     std::array<float, 4> r{0, 0, 0, integer ? std::bit_cast<float>(1u) : 1.0f};
-    int const n = f.components, width = f.bytes / n; // bytes of a component
-    switch (format) {
-    case Format::R11G11B10_FLOAT: {
-        auto const v = read<std::uint32_t>(e, 0);
-        r[0] = float_from_small_float(v & 0x7ff, 5, 6, false);
-        r[1] = float_from_small_float(v >> 11 & 0x7ff, 5, 6, false);
-        r[2] = float_from_small_float(v >> 22, 5, 5, false);
+    if (f.bits[0] == 32) {
+        std::memcpy(r.data(), e, 4u * f.components);
         return r;
     }
-    case Format::D24_UNORM_S8_UINT:
-        r[0] = float_from_unorm(read<std::uint32_t>(e, 0) & 0xffffff, 24);
-        return r;
-    case Format::D32_FLOAT_S8X24_UINT:
-        r[0] = read<float>(e, 0);
-        return r;
-    default:
-        break;
-    }
-    for (int i = 0; i < n; ++i) {
-        float& c = r[std::size_t(i)];
-        if (width == 4) {
-            std::memcpy(&c, e + 4 * i, 4);
-            continue;
-        }
-        bool const wide = width == 2;
-        switch (f.type) {
-        case FormatType::Float:
-            c = float_from_half(read<std::uint16_t>(e, i));
-            break;
-        case FormatType::Srgb:
-            c = i < 3 ? linear_from_srgb8(read<std::uint8_t>(e, i))
-                      : float_from_unorm(read<std::uint8_t>(e, i), 8);
-            break;
-        case FormatType::Snorm:
-            c = wide ? float_from_snorm(read<std::int16_t>(e, i), 16)
-                     : float_from_snorm(read<std::int8_t>(e, i), 8);
-            break;
-        case FormatType::Sint:
-            c = std::bit_cast<float>(wide ? std::int32_t(read<std::int16_t>(e, i))
-                                          : std::int32_t(read<std::int8_t>(e, i)));
-            break;
-        case FormatType::Uint:
-            c = std::bit_cast<float>(wide ? std::uint32_t(read<std::uint16_t>(e, i))
-                                          : std::uint32_t(read<std::uint8_t>(e, i)));
-            break;
-        default:
-            c = wide ? float_from_unorm(read<std::uint16_t>(e, i), 16)
-                     : float_from_unorm(read<std::uint8_t>(e, i), 8);
-        }
+    std::uint64_t word = load_word(f, e);
+    for (std::size_t i = 0; i < f.components; ++i) {
+        std::uint32_t const mask = (1u << f.bits[i]) - 1;
+        r[place(f, i)] = from_code(f, i, std::uint32_t(word) & mask);
+        word >>= f.bits[i];
     }
     return r;
 }
 
-void encode(Format format, std::array<float, 4> const& value, std::byte* e)
+void encode(Format format, std::array<float, 4> const& value, std::byte* e, unsigned write_mask)
 {
     FormatInfo const& f = info(format);
+    assert(f.type != FormatType::Depth);
     std::array<float, 4> v = value;
     if (f.type == FormatType::Float)
         for (float& c : v)
             if (c != c) c = std::bit_cast<float>(kCanonicalNan);
-    int const n = f.components, width = f.bytes / n;
-    if (format == Format::R11G11B10_FLOAT) {
-        write(e, 0,
-              small_float_from_float(v[0], 5, 6, false) |
-                  small_float_from_float(v[1], 5, 6, false) << 11 |
-                  small_float_from_float(v[2], 5, 5, false) << 22);
+    if (f.bits[0] == 32) {
+        for (std::size_t i = 0; i < f.components; ++i)
+            if (write_mask >> i & 1) std::memcpy(e + 4 * i, &v[i], 4);
         return;
     }
-    assert(f.type != FormatType::Depth);
-    for (int i = 0; i < n; ++i) {
-        float const c = v[std::size_t(i)];
-        bool const wide = width == 2;
-        if (width == 4) {
-            write(e, i, c);
-            continue;
-        }
-        switch (f.type) {
-        case FormatType::Float:
-            write(e, i, half_from_float(c));
-            break;
-        case FormatType::Srgb:
-            write(e, i, i < 3 ? srgb8_from_linear(c) : std::uint8_t(unorm_from_float(c, 8)));
-            break;
-        case FormatType::Snorm:
-            if (wide)
-                write(e, i, std::int16_t(snorm_from_float(c, 16)));
-            else
-                write(e, i, std::int8_t(snorm_from_float(c, 8)));
-            break;
-        case FormatType::Sint:
-            if (wide)
-                write(e, i, std::int16_t(clamp_sint(c, 0x7fff)));
-            else
-                write(e, i, std::int8_t(clamp_sint(c, 0x7f)));
-            break;
-        case FormatType::Uint:
-            if (wide)
-                write(e, i, std::uint16_t(clamp_uint(c, 0xffff)));
-            else
-                write(e, i, std::uint8_t(clamp_uint(c, 0xff)));
-            break;
-        default:
-            if (wide)
-                write(e, i, std::uint16_t(unorm_from_float(c, 16)));
-            else
-                write(e, i, std::uint8_t(unorm_from_float(c, 8)));
-        }
+    std::uint64_t word = write_mask == 0xf ? 0 : load_word(f, e);
+    for (std::size_t i = 0, at = 0; i < f.components; at += f.bits[i++]) {
+        std::size_t const k = place(f, i);
+        if (!(write_mask >> k & 1)) continue;
+        std::uint64_t const mask = ((std::uint64_t(1) << f.bits[i]) - 1) << at;
+        word = (word & ~mask) | (std::uint64_t(to_code(f, i, v[k])) << at & mask);
     }
+    std::memcpy(e, &word, f.bytes);
 }
 
 } // namespace tessemu

@@ -13,13 +13,17 @@
 
 namespace tessemu {
 
-/// DXGI formats, under their names.
+/// DXGI formats, under their names; docs/conformance.md says what each can be.
 enum class Format : std::uint8_t {
     R32G32B32A32_FLOAT,
     R32G32B32A32_UINT,
     R32G32B32A32_SINT,
     R32G32B32_FLOAT,
+    R32G32B32_UINT,
+    R32G32B32_SINT,
     R32G32_FLOAT,
+    R32G32_UINT,
+    R32G32_SINT,
     R32_FLOAT,
     R32_UINT,
     R32_SINT,
@@ -29,18 +33,40 @@ enum class Format : std::uint8_t {
     R16G16B16A16_UINT,
     R16G16B16A16_SINT,
     R16G16_FLOAT,
+    R16G16_UNORM,
+    R16G16_SNORM,
+    R16G16_UINT,
+    R16G16_SINT,
+    R16_FLOAT,
+    R16_UNORM,
+    R16_SNORM,
+    R16_UINT,
+    R16_SINT,
     R11G11B10_FLOAT,
+    R10G10B10A2_UNORM,
+    R10G10B10A2_UINT,
     R8G8B8A8_UNORM,
     R8G8B8A8_UNORM_SRGB,
     R8G8B8A8_SNORM,
     R8G8B8A8_UINT,
-    R16_UNORM,
+    R8G8B8A8_SINT,
+    B8G8R8A8_UNORM,
+    B8G8R8A8_UNORM_SRGB,
+    B8G8R8X8_UNORM,
+    R8G8_UNORM,
+    R8G8_SNORM,
+    R8G8_UINT,
+    R8G8_SINT,
     R8_UNORM,
+    R8_SNORM,
+    R8_UINT,
+    R8_SINT,
     D16_UNORM,
     D24_UNORM_S8_UINT,
     D32_FLOAT,
     D32_FLOAT_S8X24_UINT,
 };
+inline constexpr std::size_t kFormats = std::size_t(Format::D32_FLOAT_S8X24_UINT) + 1;
 
 enum class FormatType : std::uint8_t { Float, Unorm, Srgb, Snorm, Uint, Sint, Depth };
 
@@ -49,8 +75,22 @@ struct FormatInfo {
     FormatType type;
     std::uint8_t components;
     std::uint8_t bytes; ///< of one element
+    /// Of each component, from the element's lowest bit on; 32 alone passes untouched.
+    std::array<std::uint8_t, 4> bits;
+    bool bgr = false; ///< blue comes first, red third
 };
 FormatInfo const& info(Format format);
+
+/// Elements of a vertex are of any colour format but sRGB, render targets of any colour format,
+/// depth targets of any depth format.
+constexpr bool can_be_vertex_element(FormatType t)
+{
+    return t != FormatType::Depth && t != FormatType::Srgb;
+}
+constexpr bool can_be_render_target(FormatType t)
+{
+    return t != FormatType::Depth;
+}
 
 /// The NaN that float targets hold: which one arithmetic makes depends on the processor and on how
 /// a compiler orders operands.
@@ -62,8 +102,10 @@ std::array<float, 4> decode(Format format, std::byte const* element);
 
 /// Four registers as one element. Float formats round toward zero to fewer bits (R20), normalised
 /// ones round to nearest (R21), integer ones clamp to their range (R26). A float format has one NaN
-/// (I-4).
-void encode(Format format, std::array<float, 4> const& value, std::byte* element);
+/// (I-4). Only the components that `write_mask` names (bit i: register i) change, and with all four
+/// the bits of no component become 0.
+void encode(Format format, std::array<float, 4> const& value, std::byte* element,
+            unsigned write_mask = 0xf);
 
 /// The range that blending clamps to, [0,1] or [-1,1]; float formats have none (R136).
 constexpr bool is_clamped(FormatType t)

@@ -114,7 +114,7 @@ void FrontEnd::run_domain_shader(FrontEndChunk& c, std::size_t p) const
                     c.patch_constants.data() + p * std::size_t(hs.constant_floats()),
                     hs.patch_constants(), std::int32_t(c.first + p), d.u.data(), d.v.data(),
                     d.patch.points(), c.shaded.data() + c.first_point[p], c.stride,
-                    d_.domain_epilog ? &d_.domain_epilog : nullptr},
+                    d_.domain_epilog ? &d_.domain_epilog : nullptr, &c.factors[p]},
         c.counters.domain);
 }
 

@@ -73,7 +73,7 @@ ColorTarget::ColorTarget(int width, int height, Format format, int samples)
       pitch_(pitch_of(width, height, samples)),
       storage_(pitch_ * std::size_t(height) * bytes_)
 {
-    if (info(format).type == FormatType::Depth)
+    if (!can_be_render_target(info(format).type))
         throw Error(std::string(info(format).name) + " is not a colour format");
 }
 

@@ -80,11 +80,14 @@ void assemble_indexed(std::span<Index const> indices, DrawCall const& call,
     bool const cuts = call.index_cut == IndexCut::EveryTopology || is_strip(call.topology);
     indices = indices.subspan(std::min<std::size_t>(call.start_index, indices.size()));
     indices = indices.first(std::min<std::size_t>(call.index_count, indices.size()));
+    // Past the buffer's end, or without one, an index is 0.
+    std::size_t const past_end =
+        call.index_count == kAllIndices ? 0 : call.index_count - indices.size();
     out.index_bytes = sizeof(Index);
     out.indices_read = indices.size();
     if constexpr (sizeof(Index) == 4) {
         std::size_t const n = out.vertices_per_primitive;
-        if (!is_strip(call.topology) &&
+        if (!is_strip(call.topology) && past_end == 0 &&
             (!cuts || std::find(indices.begin(), indices.end(), kCut) == indices.end())) {
             out.vertices = indices.first(indices.size() / n * n);
             return;
@@ -101,6 +104,7 @@ void assemble_indexed(std::span<Index const> indices, DrawCall const& call,
         else
             run.push_back(i);
     }
+    run.insert(run.end(), past_end, 0u);
     finish();
 }
 
@@ -200,7 +204,7 @@ void check_draw_call(DrawCall const& call)
     for (InputElement const& e : call.layout) {
         limit("vertex buffer slot", e.slot, kMaxVertexBuffers - 1);
         FormatInfo const& f = info(e.format);
-        if (f.type == FormatType::Depth || f.type == FormatType::Srgb)
+        if (!can_be_vertex_element(f.type))
             throw Error(std::string(f.name) + " is not a vertex format");
         if (e.components < 1 || e.components > 4)
             throw Error("components of an input element is " + std::to_string(e.components) +

@@ -36,6 +36,7 @@ using IndexBuffer =
 
 inline constexpr std::size_t kMaxVertexBuffers = 32, kMaxInputElements = 32; // R38
 inline constexpr std::uint32_t kMaxVertexStride = 2048;
+inline constexpr std::uint32_t kAllIndices = 0xffffffffu;
 
 /// A slot. Vertex i lies at offset + stride * i, in wrapping 32-bit arithmetic (R32).
 struct VertexBuffer {
@@ -71,7 +72,8 @@ struct DrawCall {
     IndexBuffer indices = {};
     IndexCut index_cut = IndexCut::EveryTopology;
     std::uint32_t start_index = 0;
-    std::uint32_t index_count = 0xffffffffu;          ///< at most; the default takes all
+    /// The default takes all that there are; of more than there are, the rest are 0.
+    std::uint32_t index_count = kAllIndices;
     std::int32_t base_vertex = 0;                     ///< added to each index (R32)
     std::uint32_t vertex_count = 0, start_vertex = 0; ///< of a draw without indices
     std::uint32_t instance_count = 1, start_instance = 0;

@@ -3,8 +3,6 @@
 
 #include "emu/scalar.h"
 
-#include <cstring>
-
 namespace tessemu {
 
 bool compare(Comparison func, std::uint32_t a, std::uint32_t b)
@@ -204,27 +202,7 @@ void OutputMerger::write(int x, int y, int s, float const* color, int color_targ
             value = blend(b, target_.blend.blend_factor, info(t->format()).type, value, source1,
                           decode(t->format(), at));
         }
-        if (b.write_mask == 0xf) {
-            encode(t->format(), value, at);
-            continue;
-        }
-        // Components as bits, so that what is masked stays as it is (R138).
-        std::byte fresh[16];
-        encode(t->format(), value, fresh);
-        if (t->format() == Format::R11G11B10_FLOAT) {
-            std::uint32_t now, next, mask = 0;
-            std::memcpy(&now, at, 4), std::memcpy(&next, fresh, 4);
-            if (b.write_mask & 1) mask |= 0x7ffu;
-            if (b.write_mask & 2) mask |= 0x7ffu << 11;
-            if (b.write_mask & 4) mask |= 0x3ffu << 22;
-            now = (now & ~mask) | (next & mask);
-            std::memcpy(at, &now, 4);
-            continue;
-        }
-        FormatInfo const& f = info(t->format());
-        std::size_t const width = f.bytes / f.components;
-        for (std::size_t k = 0; k < f.components; ++k)
-            if (b.write_mask >> k & 1) std::memcpy(at + k * width, fresh + k * width, width);
+        encode(t->format(), value, at, b.write_mask); // R138
     }
 }
 

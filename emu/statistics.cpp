@@ -86,6 +86,7 @@ StageCounters& StageCounters::operator+=(StageCounters const& o)
     flops += o.flops;
     input_fetches += o.input_fetches, input_touched += o.input_touched;
     constant_fetches += o.constant_fetches, constant_touched += o.constant_touched;
+    factor_fetches += o.factor_fetches, factor_touched += o.factor_touched;
     output_fetches += o.output_fetches, output_touched += o.output_touched;
     buffer_slots = std::max(buffer_slots, o.buffer_slots);
     for (std::uint32_t i = 0; i < o.buffer_slots; ++i)

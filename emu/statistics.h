@@ -62,6 +62,7 @@ struct StageCounters {
     FlopCount flops;
     std::uint64_t input_fetches = 0, input_touched = 0;       ///< control points, vertices
     std::uint64_t constant_fetches = 0, constant_touched = 0; ///< patch constants
+    std::uint64_t factor_fetches = 0, factor_touched = 0;     ///< tess factors, by a domain shader
     std::uint64_t output_fetches = 0, output_touched = 0; ///< a hull shader's own control points
     std::array<std::uint64_t, kBufferSlots> buffer_fetches{}, buffer_writes{};
     std::uint32_t buffer_slots = 0; ///< the first ones, which the shader uses

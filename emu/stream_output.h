@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,8 +15,10 @@ namespace tessemu {
 inline constexpr std::size_t kMaxStreamOutputBuffers = 4;
 
 /// Scalars `first` to `first + count - 1` of a stream's vertex go to a buffer's vertex, after what
-/// earlier entries put there. A negative `first` leaves a gap of `count` scalars.
+/// earlier entries put there. With kGap as `first` they are left as they are.
 struct StreamOutputEntry {
+    static constexpr std::int16_t kGap = -1;
+
     std::uint8_t stream = 0;
     std::int16_t first = 0;
     std::uint8_t count = 4;
@@ -24,7 +27,8 @@ struct StreamOutputEntry {
 
 struct StreamOutputDesc {
     std::vector<StreamOutputEntry> entries;
-    std::array<std::uint32_t, kMaxStreamOutputBuffers> stride{}; ///< bytes; 0: what entries fill
+    /// Bytes from vertex to vertex of each buffer; where nothing is said, what the entries fill.
+    std::array<std::optional<std::uint32_t>, kMaxStreamOutputBuffers> stride{};
     int rasterized_stream = 0; ///< -1: nothing is rasterized (R86)
 };
 
@@ -40,7 +44,11 @@ struct StreamOutputStatistics {
     friend bool operator==(StreamOutputStatistics const&, StreamOutputStatistics const&) = default;
 };
 
-/// Checks limits (R89). \param scalars  of a vertex of every stream
+/// Refuses what Direct3D refuses (R89): what is out of range, an entry of 0 components, an output
+/// that goes out twice, a buffer of gaps alone or of two streams, a stride that is 0, no multiple
+/// of 4 or less than the entries fill. Throws LimitError or Error, which name entry, value and
+/// limit; entries count from 0.
+/// \param scalars  of a vertex of every stream
 void check_stream_output(StreamOutputDesc const& desc, int scalars);
 
 /// The stage's state over a draw: hand in whole primitives in pipeline order.

@@ -180,6 +180,8 @@ void add_instanced(CommandList& list, Draw show, SurfaceSettings const& settings
 {
     GraphicsPipelineDesc const d = show.pipeline;
     HullShader const& hull = d.hull_shader;
+    if (d.domain_shader->reads_tess_factors())
+        throw Error("the Direct3D 10 path has no tess factors for a domain shader that reads them");
     std::size_t const patches = show.patches.size();
     auto const streamed = std::make_shared<Streamed>();
     streamed->points.resize(patches * std::size_t(hull.patch_floats()));

@@ -130,10 +130,42 @@ TEST(Formats, R19AndR26IntegersTruncateAndClamp)
     EXPECT_EQ(std::bit_cast<std::int32_t>(u[2]), 7);
 }
 
+TEST(Formats, F6ComponentsLieWhereTheNameSaysFromTheLowestBitOn)
+{
+    auto const word = [](Format f, std::array<float, 4> const& v, unsigned mask = 0xf,
+                         std::uint32_t before = 0xffffffffu) {
+        encode(f, v, reinterpret_cast<std::byte*>(&before), mask);
+        return before;
+    };
+    std::array<float, 4> const v{1.0f / 255, 2.0f / 255, 3.0f / 255, 4.0f / 255};
+    EXPECT_EQ(word(Format::R8G8B8A8_UNORM, v), 0x04030201u);
+    EXPECT_EQ(word(Format::B8G8R8A8_UNORM, v), 0x04010203u);
+    EXPECT_EQ(word(Format::B8G8R8X8_UNORM, v), 0x00010203u);
+    EXPECT_EQ(word(Format::R8G8_UNORM, v), 0xffff0201u); // two bytes of the four
+    EXPECT_EQ(word(Format::R8_UNORM, v), 0xffffff01u);
+    EXPECT_EQ(word(Format::R8G8_SNORM, {-1, 1, 0, 0}), 0xffff7f81u);
+    EXPECT_EQ(word(Format::R16G16_SNORM, {-1, 1, 0, 0}), 0x7fff8001u);
+    EXPECT_EQ(word(Format::R16_FLOAT, {-2, 0, 0, 0}), 0xffffc000u);
+    EXPECT_EQ(word(Format::R10G10B10A2_UNORM, {0.25f, 0.5f, 1, 2.0f / 3}),
+              256u | 512u << 10 | 1023u << 20 | 2u << 30);
+    auto const bits = [](std::uint32_t i) { return std::bit_cast<float>(i); };
+    EXPECT_EQ(word(Format::R10G10B10A2_UINT, {bits(1), bits(1024), bits(1022), bits(4)}),
+              1u | 1023u << 10 | 1022u << 20 | 3u << 30);
+    // sRGB in the first three registers, wherever they lie.
+    std::uint32_t const half = srgb8_from_linear(0.5f);
+    EXPECT_EQ(word(Format::B8G8R8A8_UNORM_SRGB, {0, 0.5f, 1, 0.5f}), 128u << 24 | half << 8 | 255u);
+    // A mask keeps the bits of the other components.
+    EXPECT_EQ(word(Format::B8G8R8A8_UNORM, v, 1, 0xaabbccddu), 0xaa01ccddu);
+    EXPECT_EQ(word(Format::R10G10B10A2_UNORM, {0, 0, 0, 0}, 10), 0x3ff003ffu);
+    EXPECT_EQ(word(Format::R11G11B10_FLOAT, {0, 0, 0, 0}, 4), 0x003fffffu);
+    EXPECT_EQ(word(Format::R32_FLOAT, v, 14), 0xffffffffu);
+}
+
 TEST(Formats, EveryFormatGivesBackWhatItHolds)
 {
-    for (int f = 0; f <= int(Format::R8_UNORM); ++f) {
+    for (std::size_t f = 0; f < kFormats; ++f) {
         auto const format = Format(f);
+        if (info(format).type == FormatType::Depth) continue;
         std::byte first[16] = {}, second[16] = {};
         encode(format, {0.25f, 0.75f, 1, 0}, first);
         encode(format, decode(format, first), second);

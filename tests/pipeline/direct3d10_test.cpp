@@ -6,6 +6,7 @@
 #include "io/model.h"
 #include "pipeline/frame.h"
 #include "pipeline/schemes/scheme.h"
+#include "tests/emu/suite_facts/patches.h"
 #include "tests/support/cages.h"
 
 #include <gtest/gtest.h>
@@ -68,6 +69,35 @@ TEST(Direct3D10, GivesEverySchemesSurfaceBitForBit)
                 ASSERT_EQ(surface(m, s), eleven);
             }
     });
+}
+
+struct ShowsAFactor : test::PatchDomain<TessellatorDomain::Quad> {
+    template <class T>
+    test::SceneVertex<T> operator()(DomainInput<T> const& in,
+                                    ControlPoints<test::SceneVertex<T>> const& points,
+                                    ControlPoints<test::Constant<T>> const& constants,
+                                    TessFactorInput<T> const& factors) const
+    {
+        auto o = PatchDomain::operator()(in, points, constants);
+        o.value.x = factors[0].value;
+        return o;
+    }
+};
+
+// No stage of it has them.
+TEST(Direct3D10, RefusesADomainShaderThatReadsTessFactors)
+{
+    PatchPlace const place{};
+    Draw d;
+    d.patches = {&place, 1};
+    d.pipeline = test::PatchScene().use_patches(test::PatchHull<TessellatorDomain::Quad>{}).desc;
+    CommandList list;
+    list.commands.emplace_back(d);
+    EXPECT_EQ(instanced(std::move(list), {}).commands.size(), 2u);
+    d.pipeline.domain_shader = bind_domain_shader(ShowsAFactor{}, {});
+    list = {};
+    list.commands.emplace_back(d);
+    EXPECT_THROW(instanced(std::move(list), {}), Error);
 }
 
 TEST(Direct3D10, DrawsTheSamePicture)

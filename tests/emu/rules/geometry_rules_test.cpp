@@ -222,8 +222,8 @@ TEST(StreamOutput, R87R89GapsStridesAndLimits)
     Scene s;
     s.call.topology = PrimitiveTopology::LineStrip;
     // y, a gap of two, x; into 24 bytes a vertex.
-    s.desc.stream_output =
-        StreamOutputDesc{{{0, 5, 1, 2}, {0, -1, 2, 2}, {0, 4, 1, 2}}, {0, 0, 24, 0}, -1};
+    s.desc.stream_output = StreamOutputDesc{
+        {{0, 5, 1, 2}, {0, -1, 2, 2}, {0, 4, 1, 2}}, {std::nullopt, std::nullopt, 24}, -1};
     std::vector<std::byte> memory(1000, std::byte{0xaa});
     StreamOutputBuffer buffers[3] = {{}, {}, {memory, 0}};
     s.options.stream_output = buffers;
@@ -244,11 +244,11 @@ TEST(StreamOutput, R87R89GapsStridesAndLimits)
     };
     refused({{{0, 0, 129, 0}}, {}, 0});
     refused({{{0, 0, 4, 4}}, {}, 0});
-    refused({{{0, 0, 4, 0}}, {2052, 0, 0, 0}, 0});
-    refused({{{0, 0, 4, 0}}, {8, 0, 0, 0}, 0});
+    refused({{{0, 0, 4, 0}}, {2052}, 0});
+    refused({{{0, 0, 4, 0}}, {8}, 0});
     refused({{{0, 126, 4, 0}}, {}, 0});
     refused({{{0, 0, 4, 0}, {1, 0, 4, 0}}, {}, 0});
-    EXPECT_NO_THROW(check_stream_output({{{0, 0, 128, 0}}, {512, 0, 0, 0}, 0}, 128));
+    EXPECT_NO_THROW(check_stream_output({{{0, 0, 128, 0}}, {512}, 0}, 128));
 }
 
 TEST(StreamOutput, R39R40R76DrawAutoDrawsWhatWasStreamed)
