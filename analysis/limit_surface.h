@@ -2,7 +2,7 @@
 // masks, with creases, corners, darts and boundaries as the mesh's tags have them.
 //
 // Rules are OpenSubdiv's (docs/compare.md says what the reference is for each tag; formulas:
-// docs/math/subdivision.md, 1.6, 1.7 and 5.3).
+// docs/math/subdivision.md, 1.6 and 1.7).
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -28,8 +28,8 @@ public:
     int level() const { return level_; }
     int grid() const { return 1 << level_; } ///< segments along an edge of a base quad
 
-    /// Points of the surface. A vertex on infinitely sharp edges is a point for each side, one after
-    /// the other: the same position, its own normal.
+    /// Points of the surface. A vertex on infinitely sharp edges is a point for each side, one
+    /// after the other: the same position, its own normal.
     std::vector<glm::dvec3> const& positions() const { return position_; }
     /// Of unit length. Where a side of a vertex has no tangent plane (a pole, a sharp corner whose
     /// edges lie in one line) the mean of the refined faces around.

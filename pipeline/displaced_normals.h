@@ -5,10 +5,11 @@
 //
 //     p_1 x p_2 = (N . (a_1 x a_2)) N + h_2 (a_1 x N) + h_1 (N x a_2),     a_i = S_i + h N_i
 //
-// S_i and N_i are differences between points of the patch, exact for polynomials of degree 4 but for
-// the points' roundings. h_i is the height map's own derivative. Where it jumps, as at a texel's centre, both sides' mean
-// counts, and at a point that several patches have the mean of theirs, from each its own side: so
-// all have the same bits. Where the tangents are parallel or zero, at a pole, N stays.
+// S_i and N_i are differences between points of the patch, exact for polynomials of degree 4 but
+// for the points' roundings. h_i is the height map's own derivative. Where it jumps, as at a texel's
+// centre, both sides' mean counts, and at a point that several patches have the mean of theirs, from
+// each its own side: so all have the same bits. Where the tangents are parallel or zero, at a pole,
+// N stays.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

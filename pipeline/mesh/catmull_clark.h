@@ -60,7 +60,8 @@ struct CatmullClark {
     {
         return (a + 4.0 * v + b) / 6.0;
     }
-    /// The left eigenvector of the largest sine mode, k > 1 (docs/math/subdivision.md, 5.3).
+    /// The left eigenvector of the largest sine mode, k > 1 (docs/math/loop09.md, 4: the plain
+    /// rule's).
     template <class X, class Edge, class Face>
     static X crease_across(int k, X const& v, Edge const& edge, Face const& face)
     {

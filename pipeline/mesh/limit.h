@@ -1,5 +1,5 @@
 // Limit position and tangents of a vertex, by any scheme's masks, whatever is tagged at it
-// (docs/math/subdivision.md, 1.6, 1.7 and 5.3).
+// (docs/math/subdivision.md, 1.6 and 1.7; docs/math/loop09.md, 4).
 //
 // Beyond those of subdivision.h, Masks has
 //

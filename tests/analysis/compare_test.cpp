@@ -54,6 +54,28 @@ TEST(Compare, SeesAChangedScheme)
     EXPECT_GT(wrong.to_limit.rms, 2 * right.to_limit.rms);
 }
 
+// A cube with sharp edges is its own limit surface; a scheme that draws it smooth has its corners at
+// half their distance from the centre, which is half a diagonal. Corners are sums of floats that
+// round to units of 2^-24, in coordinates of up to 1 in a diagonal of 3.46.
+TEST(Compare, ASmoothedCreaseIsAnError)
+{
+    ControlMesh cube;
+    for (int k = 0; k < 8; ++k)
+        cube.positions.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+    for (std::vector<std::uint32_t> const& face : std::vector<std::vector<std::uint32_t>>{
+             {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
+        cube.add_face(face);
+        for (std::size_t k = 0; k < 4; ++k)
+            cube.creases.push_back({face[k], face[(k + 1) % 4], kInfinitelySharp});
+    }
+    for (char const* scheme : {"gregory-stencil", "gregory-two-stage", "acc", "pm"}) {
+        SurfaceComparison const c = compare(cube, scheme, 3);
+        EXPECT_NEAR(c.equal_position.max, 0.25, 8 * 0x1p-24) << scheme;
+        EXPECT_NEAR(c.from_limit.max, 0.25, 8 * 0x1p-24) << scheme; // its own corner is the closest
+        EXPECT_EQ(c.equal_position.samples, 6u * 81) << scheme;
+    }
+}
+
 // Faces that are not drawn are not compared: a hole in a regular surface leaves no error behind.
 TEST(Compare, HiddenFacesTakeNoPart)
 {

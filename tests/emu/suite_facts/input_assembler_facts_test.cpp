@@ -66,6 +66,8 @@ TEST(InputAssemblerFacts, S17TheAllOnesIndexCutsAListTooWhichLeavesOneTriangleOf
     call.topology = PrimitiveTopology::TriangleList;
     call.indices = std::span<std::uint32_t const>(indices);
     EXPECT_EQ(assembled(call), (std::vector<std::uint32_t>{2000, 3000, 4000}));
+    call.index_cut = IndexCut::StripsOnly; // as drivers have it
+    EXPECT_EQ(assembled(call), indices);
 }
 
 TEST(InputAssemblerFacts, S18G10IndicesStartWhereTheBufferDoesAndPastItsEndTheyAreZero)
