@@ -83,6 +83,8 @@ void assemble_indexed(std::span<Index const> indices, DrawCall const& call,
     // Past the buffer's end, or without one, an index is 0.
     std::size_t const past_end =
         call.index_count == kAllIndices ? 0 : call.index_count - indices.size();
+    if (past_end > kMostPastIndices)
+        throw LimitError("indices past the index buffer's end", past_end, kMostPastIndices);
     out.index_bytes = sizeof(Index);
     out.indices_read = indices.size();
     if constexpr (sizeof(Index) == 4) {

@@ -37,6 +37,8 @@ using IndexBuffer =
 inline constexpr std::size_t kMaxVertexBuffers = 32, kMaxInputElements = 32; // R38
 inline constexpr std::uint32_t kMaxVertexStride = 2048;
 inline constexpr std::uint32_t kAllIndices = 0xffffffffu;
+/// A draw may ask for so many indices more than its buffer holds: they take memory.
+inline constexpr std::size_t kMostPastIndices = std::size_t(1) << 24;
 
 /// A slot. Vertex i lies at offset + stride * i, in wrapping 32-bit arithmetic (R32).
 struct VertexBuffer {
@@ -72,7 +74,8 @@ struct DrawCall {
     IndexBuffer indices = {};
     IndexCut index_cut = IndexCut::EveryTopology;
     std::uint32_t start_index = 0;
-    /// The default takes all that there are; of more than there are, the rest are 0.
+    /// The default takes all that there are; of more than there are, the rest are 0, up to
+    /// kMostPastIndices of them.
     std::uint32_t index_count = kAllIndices;
     std::int32_t base_vertex = 0;                     ///< added to each index (R32)
     std::uint32_t vertex_count = 0, start_vertex = 0; ///< of a draw without indices

@@ -43,7 +43,7 @@ void check_stream_output(StreamOutputDesc const& desc, int scalars)
                         std::to_string(owner) + " and " + number(e.stream) + ", the latter by " +
                         "entry " + number(i));
         owner = e.stream;
-        all += e.count;
+        limit("stream output scalars per vertex", all += e.count, 128);
         if (e.first == StreamOutputEntry::kGap) continue;
         has_data[e.buffer] = true;
         limit("one past the last component of " + entry, std::uint64_t(e.first) + e.count,
@@ -58,7 +58,6 @@ void check_stream_output(StreamOutputDesc const& desc, int scalars)
                             " does: an output goes out once");
         }
     }
-    limit("stream output scalars per vertex", all, 128);
     auto const filled = filled_bytes(desc);
     for (std::size_t b = 0; b < kMaxStreamOutputBuffers; ++b) {
         std::string const buffer = "stream output buffer " + number(b);

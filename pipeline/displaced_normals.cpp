@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -153,9 +154,10 @@ public:
     }
     glm::dvec3 at(MeshPoint const& point) const
     {
-        return std::lower_bound(normals_.begin(), normals_.end(), NamedNormal{point, {}},
-                                has_smaller_name)
-            ->second;
+        auto const found = std::lower_bound(normals_.begin(), normals_.end(),
+                                            NamedNormal{point, {}}, has_smaller_name);
+        assert(found != normals_.end() && found->first == point);
+        return found->second;
     }
 
 private:
@@ -195,6 +197,7 @@ public:
     int control_points() const override { return surface_->control_points(); }
     int control_point_floats() const override { return surface_->control_point_floats(); }
     int patch_constant_floats() const override { return surface_->patch_constant_floats(); }
+    bool reads_tess_factors() const override { return surface_->reads_tess_factors(); }
     OutputLayout output() const override { return surface_->output(); }
     std::vector<ResourceInfo> resources(ShaderBinding const&) const override
     {

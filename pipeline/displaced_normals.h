@@ -23,7 +23,7 @@ namespace tessemu {
 /// statistics are those of visit_surface(): differences are not counted.
 ///
 /// Throws Error where the settings have no displacement.
-/// \cost  draws twice, and 29 times the domain shader in all; memory for points on patches' edges
+/// \cost  draws twice, and 30 times the domain shader in all; memory for points on patches' edges
 ListStatistics visit_displaced_surface(PatchMesh const& mesh, FrameSettings const& settings,
                                        ThreadPool const& threads, SurfaceVisitor const& visit);
 

@@ -15,6 +15,8 @@ namespace tessemu {
 /// F = mean of the face, E = (a + b + F + F')/4, V = (n-2)/n V + mean(d)/n + mean(F)/n (LOOP10
 /// section 3; docs/math/subdivision.md, 1.1); along a boundary or crease midpoints and (1,6,1)/8.
 struct CatmullClark {
+    static constexpr bool kFacePoints = true;
+
     template <class X> static X face(X const& sum, int sides) { return sum / double(sides); }
     template <class X> static X edge(X const& a, X const& b, X const& left, X const& right)
     {
@@ -86,15 +88,15 @@ struct CatmullClark {
 };
 
 /// One step, with the mesh's creases, corners and boundary rule. Tags go on to the new edges and
-/// vertices, softened; the quads of holes are holes.
+/// vertices, decremented; the quads of holes are holes.
 ///
 /// \returns vertex points, then edge points in order of first meeting, then face points; quads face
 ///          by face, each starting at its old vertex. Sums run in double and are rounded once.
 ControlMesh catmull_clark_step(Topology const& topology);
 
-/// The step's faces and tags, without positions but the mesh's own rounded `points`.
+/// The step's faces and tags, without texture coordinates.
 ///
-/// \param points  of the step's vertices
+/// \param points  of the step's vertices, as refined_points() gives them; rounded
 ControlMesh catmull_clark_mesh(Topology const& topology, Sharpness const& sharpness,
                                std::span<glm::dvec3 const> points);
 

@@ -14,7 +14,7 @@ bool is_finite(float sharpness)
 
 } // namespace
 
-float softened(float sharpness)
+float decremented(float sharpness)
 {
     return sharpness >= kInfinitelySharp ? sharpness : std::max(0.0f, sharpness - 1);
 }
@@ -24,10 +24,9 @@ void SharpEnd::add(float sharpness)
     if (is_finite(sharpness)) sum += sharpness, ++count;
 }
 
-float SharpEnd::softened_here(float sharpness, CreaseMethod method) const
+float SharpEnd::decremented_here(float sharpness) const
 {
-    if (method == CreaseMethod::Normal || count < 2 || !is_finite(sharpness))
-        return softened(sharpness);
+    if (count < 2 || !is_finite(sharpness)) return decremented(sharpness);
     float const others = (sum - sharpness) / float(count - 1);
     return std::max(0.0f, 0.75f * sharpness + 0.25f * others - 1);
 }
@@ -40,7 +39,7 @@ VertexRule RingSharpness::rule() const
     return sharp > 2 ? VertexRule::Corner : kRules[sharp];
 }
 
-bool RingSharpness::is_passing() const
+bool RingSharpness::is_semi_sharp() const
 {
     return is_finite(vertex) || std::any_of(edge.begin(), edge.end(), is_finite);
 }
@@ -55,10 +54,8 @@ std::array<std::size_t, 2> RingSharpness::crease() const
 
 std::array<float, 2> RingSharpness::halves(std::size_t j) const
 {
-    if (method == CreaseMethod::Normal) return {softened(edge[j]), softened(edge[j])};
-    SharpEnd here;
-    for (float s : edge) here.add(s);
-    return {here.softened_here(edge[j], method), far_end[j].softened_here(edge[j], method)};
+    if (method == CreaseMethod::Normal) return {decremented(edge[j]), decremented(edge[j])};
+    return {here.decremented_here(edge[j]), far_end[j].decremented_here(edge[j])};
 }
 
 RingSharpness RingSharpness::after_step() const
@@ -66,11 +63,12 @@ RingSharpness RingSharpness::after_step() const
     RingSharpness out;
     out.method = method;
     out.open = open;
-    out.vertex = softened(vertex);
+    out.vertex = decremented(vertex);
     for (std::size_t j = 0; j < edge.size(); ++j) {
         auto const [near, far] = halves(j);
         out.edge.push_back(near);
         if (far_end.empty()) continue;
+        out.here.add(near);
         SharpEnd& end = out.far_end.emplace_back(); // the new edge point, in the middle of a crease
         end.add(near);
         end.add(far);
@@ -78,7 +76,7 @@ RingSharpness RingSharpness::after_step() const
     return out;
 }
 
-double passing_weight(RingSharpness const& now, RingSharpness const& after)
+double fractional_weight(RingSharpness const& now, RingSharpness const& after)
 {
     float sum = 0;
     int count = 0;
@@ -110,6 +108,11 @@ Sharpness::Sharpness(Topology const& topology) : topology_(&topology)
         edge_[h] = edge_[other] = c.sharpness;
         tagged_[c.a] = tagged_[c.b] = 1;
     }
+    if (mesh.crease_method == CreaseMethod::Chaikin && !edge_.empty()) {
+        end_.resize(mesh.positions.size());
+        for (std::uint32_t v = 0; v < mesh.positions.size(); ++v)
+            for (HalfEdge h : topology.ring(v)) end_[v].add(edge(h)); // a boundary adds nothing
+    }
     if (!mesh.corners.empty()) vertex_.assign(mesh.positions.size(), 0);
     for (ControlMesh::Corner const& c : mesh.corners) {
         vertex_[c.vertex] = c.sharpness;
@@ -125,35 +128,29 @@ float Sharpness::vertex(std::uint32_t v) const
     return vertex_.empty() ? 0 : vertex_[v];
 }
 
-SharpEnd Sharpness::end(std::uint32_t v) const
-{
-    SharpEnd out;
-    for (HalfEdge h : topology_->ring(v)) out.add(edge(h));
-    return out; // a boundary ring's last edge is infinite
-}
-
 void Sharpness::around(std::uint32_t v, RingSharpness& out) const
 {
     auto const ring = topology_->ring(v);
-    out.method = topology_->mesh().crease_method;
+    out.method = end_.empty() ? CreaseMethod::Normal : CreaseMethod::Chaikin;
     out.open = topology_->is_boundary(v);
     out.vertex = vertex(v);
     out.edge.clear();
     for (HalfEdge h : ring) out.edge.push_back(edge(h));
     if (out.open) out.edge.push_back(kInfinitelySharp);
+    out.here = {};
     out.far_end.clear();
-    if (out.method == CreaseMethod::Normal) return;
-    for (HalfEdge h : ring) out.far_end.push_back(end(topology_->vertex_of(topology_->next(h))));
+    if (end_.empty()) return;
+    out.here = end_[v];
+    for (HalfEdge h : ring) out.far_end.push_back(end_[topology_->vertex_of(topology_->next(h))]);
     if (out.open) out.far_end.emplace_back();
 }
 
 std::array<float, 2> Sharpness::halves(HalfEdge h) const
 {
     float const s = edge(h);
-    CreaseMethod const method = topology_->mesh().crease_method;
-    if (method == CreaseMethod::Normal || !is_finite(s)) return {softened(s), softened(s)};
-    return {end(topology_->vertex_of(h)).softened_here(s, method),
-            end(topology_->vertex_of(topology_->next(h))).softened_here(s, method)};
+    if (end_.empty()) return {decremented(s), decremented(s)};
+    auto const at = [&](std::uint32_t v) { return end_[v].decremented_here(s); };
+    return {at(topology_->vertex_of(h)), at(topology_->vertex_of(topology_->next(h)))};
 }
 
 } // namespace tessemu

@@ -20,7 +20,7 @@ enum class VertexRule {
 };
 
 /// The sharpness that is left after a step: one less, and at least 0; infinite stays.
-float softened(float sharpness);
+float decremented(float sharpness);
 
 /// What is sharp at one end of an edge, for Chaikin's rule: sharpnesses above 0 that are finite.
 struct SharpEnd {
@@ -29,8 +29,8 @@ struct SharpEnd {
 
     void add(float sharpness);
     /// Of an edge of `sharpness` that ends here, the sharpness of the half at this end after a
-    /// step: softened, with Chaikin's rule after 3/4 of it and 1/4 of the mean of the others.
-    float softened_here(float sharpness, CreaseMethod method) const;
+    /// step by Chaikin's rule: 3/4 of it and 1/4 of the mean of the others, decremented.
+    float decremented_here(float sharpness) const;
 };
 
 /// The edges around a vertex, in the order of Topology::ring.
@@ -39,11 +39,13 @@ struct RingSharpness {
     bool open = false;       ///< on the boundary: edge[0] and edge.back() are infinitely sharp
     float vertex = 0;        ///< the vertex's own
     std::vector<float> edge; ///< as many as faces, and one more where it is open
-    std::vector<SharpEnd> far_end; ///< of each edge, with it; empty unless Chaikin's rule needs it
+    // For Chaikin's rule; empty with the other.
+    SharpEnd here;
+    std::vector<SharpEnd> far_end; ///< of each edge, with it
 
     VertexRule rule() const;
     /// A finite sharpness is left: the surface is smoother here than the rule says.
-    bool is_passing() const;
+    bool is_semi_sharp() const;
     /// The first sharp edge and the last: a crease's two.
     std::array<std::size_t, 2> crease() const;
     /// What is left after a step, on the halves of the edges that lie at the vertex.
@@ -54,7 +56,7 @@ struct RingSharpness {
 
 /// How much of the rule of `now` a vertex's new point has where that of `after` is another: the
 /// mean of the sharpnesses that end in this step, at most 1.
-double passing_weight(RingSharpness const& now, RingSharpness const& after);
+double fractional_weight(RingSharpness const& now, RingSharpness const& after);
 
 /// How much of the midpoint an edge's new point has, of `sharpness` above 0 and with such halves
 /// after the step; the rest is the smooth edge point. With Chaikin's rule more than all, up to 4/3,
@@ -89,12 +91,11 @@ public:
     std::array<float, 2> halves(HalfEdge h) const;
 
 private:
-    SharpEnd end(std::uint32_t v) const;
-
     Topology const* topology_;
     std::vector<float> edge_;   ///< by half-edge; empty: no creases
     std::vector<float> vertex_; ///< empty: no corners
     std::vector<char> tagged_;  ///< by vertex; empty: no tags
+    std::vector<SharpEnd> end_; ///< by vertex; empty: Chaikin's rule is not needed
 };
 
 } // namespace tessemu

@@ -3,14 +3,17 @@
 //
 // A scheme is a traits class, Masks (see catmull_clark.h):
 //
+//     kFacePoints               whether faces' points are vertices of the refined mesh
 //     face(sum, sides)          point of a face, of the sum of its vertices
 //     edge(a, b, left, right)   of a smooth edge and the points of its faces
+//     smooth_triangle_edge(a, b, left, right, triangles)  the same with `smoothtriangles smooth`
 //     vertex(n, v, edges, faces)  of a smooth vertex, the sums of its edges' far ends and of its
 //                               faces' points
 //     crease_edge(a, b), crease_vertex(a, v, b)  along a crease or boundary
 //
 // Points are of any type X that can be added, and multiplied and divided by a number: positions,
-// or rows of weights. Where sharpness blends rules: docs/math/subdivision.md, 1.7.
+// or rows of weights. A triangle's third vertex is 3 F - a - b of its mean F, so Loop's edge points
+// are edge(a, b, F, F') too. Where sharpness blends rules: docs/math/subdivision.md, 1.7.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -42,19 +45,19 @@ X vertex_point(RingSharpness const& now, std::size_t n, X const& v, Edge const& 
         return Masks::vertex(int(n), v, edges, faces);
     };
     VertexRule const rule = now.rule();
-    if (rule == VertexRule::Smooth || rule == VertexRule::Dart || !now.is_passing())
+    if (rule == VertexRule::Smooth || rule == VertexRule::Dart || !now.is_semi_sharp())
         return by_rule_of(rule, now);
     RingSharpness const after = now.after_step();
     VertexRule const then = after.rule();
     if (then == rule) return by_rule_of(rule, now);
-    double const w = passing_weight(now, after);
+    double const w = fractional_weight(now, after);
     return by_rule_of(then, after) * (1 - w) + by_rule_of(rule, now) * w;
 }
 
 /// The points after a step.
 ///
 /// \param x  of the mesh's vertices
-/// \returns  vertices' points, then edges' in order of first meeting, then faces'
+/// \returns  vertices' points, then edges' in order of first meeting, then faces', if it has them
 /// \cost     linear in the corners of faces
 template <class Masks, class X>
 std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpness,
@@ -107,7 +110,7 @@ std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpne
                              : Masks::edge(a, b, face_point[f], face_point[g]);
         out.push_back(w == 0 ? smooth : smooth * (1 - w) + Masks::crease_edge(a, b) * w);
     }
-    out.insert(out.end(), face_point.begin(), face_point.end());
+    if constexpr (Masks::kFacePoints) out.insert(out.end(), face_point.begin(), face_point.end());
     return out;
 }
 

@@ -129,6 +129,7 @@ HalfEdge Topology::twin(HalfEdge h) const
 
 HalfEdge Topology::find_edge(std::uint32_t a, std::uint32_t b) const
 {
+    if (ring(b).size() < ring(a).size()) std::swap(a, b);
     for (HalfEdge h : ring(a)) {
         if (vertex_of(next(h)) == b) return h;
         if (vertex_of(previous(h)) == b) return previous(h);

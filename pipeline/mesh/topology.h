@@ -52,7 +52,8 @@ public:
     /// The half-edge on the other side; none on the boundary.
     static constexpr HalfEdge kNone = 0xffffffffu;
     HalfEdge twin(HalfEdge h) const;
-    /// A half-edge between two vertices, in either direction; none if they share no edge.
+    /// A half-edge between two vertices, in either direction; none if they share no edge. \cost  of
+    /// the smaller ring
     HalfEdge find_edge(std::uint32_t a, std::uint32_t b) const;
 
     /// Vertices of a face and of all faces that touch it, ascending.

@@ -224,23 +224,28 @@ void warn_of_tags(SchemeInfo const& info, RefinedMesh const& refined, std::vecto
     std::string const after =
         refined.steps() ? " after " + in_words_of_steps(refined.steps()) : std::string();
     auto const is_left = [&](float sharpness) {
-        return sharpness >= kInfinitelySharp || mesh.crease_method != CreaseMethod::Normal ||
-               sharpness > float(refined.steps());
+        return sharpness >= kInfinitelySharp || sharpness > float(refined.steps());
     };
     // A crease on the boundary is sharp by nature.
-    auto const creases =
+    auto const is_inside = [](Topology const& t, ControlMesh::Crease const& c) {
+        HalfEdge const h = t.find_edge(c.a, c.b);
+        return h != Topology::kNone && t.twin(h) != Topology::kNone;
+    };
+    auto creases =
         std::count_if(mesh.creases.begin(), mesh.creases.end(), [&](ControlMesh::Crease const& c) {
-            HalfEdge const h = topology.find_edge(c.a, c.b);
-            return is_left(c.sharpness) && h != Topology::kNone &&
-                   topology.twin(h) != Topology::kNone;
+            return is_left(c.sharpness) && is_inside(topology, c);
         });
-    if (creases && !refined.mesh().creases.empty() && !info.takes.creases)
+    if (creases == 0 && mesh.crease_method == CreaseMethod::Chaikin) // sharper ones lend it some
+        creases = std::any_of(
+            refined.mesh().creases.begin(), refined.mesh().creases.end(),
+            [&](ControlMesh::Crease const& c) { return is_inside(refined.topology(), c); });
+    if (creases && !info.takes.creases)
         out.push_back(std::to_string(creases) + " crease edges are drawn smooth" + after +
                       ": the scheme knows no creases");
     auto const corners =
         std::count_if(mesh.corners.begin(), mesh.corners.end(),
                       [&](ControlMesh::Corner const& c) { return is_left(c.sharpness); });
-    if (corners && !refined.mesh().corners.empty() && !info.takes.corners)
+    if (corners && !info.takes.corners)
         out.push_back(std::to_string(corners) + " sharp corners are drawn smooth" + after +
                       ": the scheme knows no corners");
     ControlMesh const& drawn = refined.mesh();

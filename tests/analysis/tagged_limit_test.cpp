@@ -113,8 +113,9 @@ points_of_face(LimitSurface const& limit, ControlMesh const& base, std::uint32_t
 
 struct Agreement {
     std::size_t compared = 0;
-    double position = 0; ///< worst distance in diagonals
-    double normal = 0;   ///< worst |n - n'|
+    double position = 0;  ///< worst distance in diagonals
+    double near_dart = 0; ///< the same within a face of an infinitely sharp dart
+    double normal = 0;    ///< worst |n - n'|
 };
 
 Agreement compare_with_samples(std::filesystem::path const& obj, std::filesystem::path const& csv)
@@ -127,6 +128,15 @@ Agreement compare_with_samples(std::filesystem::path const& obj, std::filesystem
     for (std::size_t f = 0; f < mesh.faces(); ++f) quads = quads && mesh.face(f).size() == 4;
     LimitSurface const limit(topology, quads ? 3 : 4, positions); // samples at 1/8
     Golden const golden(csv);
+    Sharpness const sharpness(topology);
+    std::vector<char> at_dart(mesh.faces(), 0);
+    RingSharpness around;
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+        if (topology.ring(v).empty()) continue;
+        sharpness.around(v, around);
+        bool const is_dart = around.rule() == VertexRule::Dart && !around.is_semi_sharp();
+        for (HalfEdge h : topology.ring(v)) at_dart[topology.face_of(h)] |= is_dart;
+    }
     Agreement out;
     std::uint32_t face = Topology::kNone;
     std::map<std::array<int, 3>, std::uint32_t> points;
@@ -139,9 +149,9 @@ Agreement compare_with_samples(std::filesystem::path const& obj, std::filesystem
             ADD_FAILURE() << "no point for " << s.line;
             return out;
         }
-        out.position =
-            std::max(out.position,
-                     glm::length(limit.positions()[at->second] - s.position) / golden.diagonal);
+        double& worst = at_dart[s.face] ? out.near_dart : out.position;
+        worst = std::max(worst,
+                         glm::length(limit.positions()[at->second] - s.position) / golden.diagonal);
         if (s.normal != Vec(0))
             out.normal = std::max(out.normal, glm::length(limit.normals()[at->second] - s.normal));
         ++out.compared;
@@ -151,13 +161,14 @@ Agreement compare_with_samples(std::filesystem::path const& obj, std::filesystem
 }
 
 // Samples are printed with 10 digits, in models of up to 10 diagonals from their origin: 5e-9. The
-// file with an infinitely sharp dart is off by 1e-5 itself, for OpenSubdiv takes a smooth vertex's
-// mask there. Normals have 8 decimals, and at extraordinary vertices those of OpenSubdiv's patches
+// file with infinitely sharp darts is off by 1e-5 itself in the faces there, for OpenSubdiv takes a
+// smooth vertex's mask. Normals have 8 decimals, and at extraordinary vertices those of OpenSubdiv's patches
 // are off by up to 6e-6 (see limit_surface_test.cpp).
 void expect_agreement(std::string const& name, Agreement const& a)
 {
     EXPECT_GT(a.compared, 100u);
-    EXPECT_LE(a.position, name == "catmark_inf_crease0" ? 1e-5 : 5e-9) << name;
+    EXPECT_LE(a.position, 5e-9) << name;
+    EXPECT_LE(a.near_dart, 1e-5) << name;
     EXPECT_LE(a.normal, 6e-6) << name;
     testing::Test::RecordProperty("samples", std::to_string(a.compared));
     testing::Test::RecordProperty("worst_of_the_diagonal",
@@ -193,6 +204,43 @@ INSTANTIATE_TEST_SUITE_P(Shared, SharedTaggedCage,
                                          "catmark_edgeonly", "catmark_hole_test1", "catmark_pawn",
                                          "catmark_rook", "catmark_smoothtris0",
                                          "catmark_torus_creases0", "spot_control", "two_hole"));
+
+// Every point of a refined mesh against OpenSubdiv's, as sets: the orders differ. Both sum in double
+// means of a few points of up to 8, so they agree to some units of 2^-50; but for Chaikin's
+// sharpnesses, which are floats whose sums round in the order of a ring: 2^-24 of 2 units.
+class RefinedCage : public testing::TestWithParam<std::pair<std::string, int>> {};
+
+TEST_P(RefinedCage, HasOpenSubdivsPoints)
+{
+    auto const& [name, steps] = GetParam();
+    ControlMesh mesh = load_model(test::golden("limit/" + name + ".obj").string()).mesh;
+    bool const chaikin = mesh.crease_method == CreaseMethod::Chaikin;
+    EXPECT_TRUE(chaikin || mesh.smooth_triangles);
+    std::vector<Vec> x(mesh.positions.begin(), mesh.positions.end());
+    for (int step = 0; step < steps; ++step) {
+        Topology const topology(mesh);
+        Sharpness const sharpness(topology);
+        x = refined_points<CatmullClark, Vec>(topology, sharpness, x);
+        ControlMesh fine = catmull_clark_mesh(topology, sharpness, x);
+        mesh = std::move(fine);
+    }
+    std::istringstream in(test::read_text(test::golden("limit/" + name + ".refined.txt")));
+    std::vector<char> taken(x.size(), 0);
+    std::size_t points = 0;
+    for (Vec p; in >> p.x >> p.y >> p.z; ++points) {
+        std::size_t nearest = 0;
+        for (std::size_t i = 1; i < x.size(); ++i)
+            if (glm::length(x[i] - p) < glm::length(x[nearest] - p)) nearest = i;
+        EXPECT_LE(glm::length(x[nearest] - p), chaikin ? 0x1p-23 : 0x1p-48) << points;
+        taken[nearest] = 1;
+    }
+    EXPECT_EQ(points, x.size());
+    EXPECT_EQ(std::count(taken.begin(), taken.end(), 1), std::ptrdiff_t(x.size()));
+}
+INSTANTIATE_TEST_SUITE_P(OpenSubdiv, RefinedCage,
+                         testing::Values(std::pair("chaikin_sheet", 3),
+                                         std::pair("smooth_triangles", 2)),
+                         [](auto const& of) { return of.param.first; });
 
 // Tags of every kind at random: sharpness below, at and above whole steps, and infinite.
 ControlMesh with_random_tags(ControlMesh mesh, std::uint32_t seed)
@@ -233,14 +281,26 @@ double reach_of(ControlMesh const& mesh)
 // A point of the limit surface is the same however far the mesh was refined before the masks: what
 // is still sharp goes on in the vertex's own ring. A refined point is a mean of at most 2 n + 1
 // others, n up to 40 here, so a step adds at most as many roundings; at most 10 steps follow.
+//
+// So are normals, but at the mesh's own sharp vertices, where there is none and a convention holds,
+// and on boundaries and creases of five faces a side and more. A tangent is a difference of such
+// points, shorter by (1/4)^10 at worst; where both tangents are nearly parallel they turn further,
+// which 1e-6 leaves room for: a wrong mask turns normals by degrees.
 TEST(TaggedLimit, DoesNotDependOnTheLevel)
 {
-    std::size_t compared = 0, normals = 0;
+    std::size_t points = 0, normals = 0;
     for (std::uint32_t seed = 1; seed <= 24; ++seed) {
         ControlMesh const mesh = with_random_tags(test::random_mesh(seed), seed);
         Topology const topology(mesh);
+        Sharpness const sharpness(topology);
         LimitSurface const coarse(topology, 2), fine(topology, 4);
         double const reach = reach_of(mesh);
+        RingSharpness around;
+        auto const has_normal = [&](std::uint32_t v) {
+            sharpness.around(v, around);
+            return around.rule() != VertexRule::Corner &&
+                   (sharpness.is_plain(v) || topology.ring(v).size() < 5);
+        };
         for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
             if (!coarse.has_grid(f)) continue;
             for (int i = 0; i <= 4; ++i)
@@ -249,16 +309,18 @@ TEST(TaggedLimit, DoesNotDependOnTheLevel)
                                         b = fine.vertex(f, 4 * i, 4 * j);
                     double const apart = glm::length(coarse.positions()[a] - fine.positions()[b]);
                     EXPECT_LE(apart, 14 * 81 * 0x1p-53 * reach) << seed << " " << f;
-                    ++compared;
-                    // Normals turn where the surface is nearly singular; most do not.
-                    normals += glm::length(coarse.normals()[a] - fine.normals()[b]) < 1e-6;
+                    ++points;
+                    if (i % 4 == 0 && j % 4 == 0 &&
+                        !has_normal(mesh.face(f)[std::size_t(j == 0 ? i / 4 : 3 - i / 4)]))
+                        continue;
+                    EXPECT_LE(glm::length(coarse.normals()[a] - fine.normals()[b]), 1e-6)
+                        << seed << " " << f << " " << i << " " << j;
+                    ++normals;
                 }
         }
     }
-    EXPECT_GT(compared, 10000u);
-    EXPECT_GT(double(normals), 0.98 * double(compared));
-    RecordProperty("points", std::to_string(compared));
-    RecordProperty("equal_normals", std::to_string(normals));
+    EXPECT_GT(points, 10000u);
+    EXPECT_GT(normals, 10000u);
 }
 
 // A cube all of whose edges are sharp is itself. Its corners lie a quarter of the diagonal from
@@ -325,9 +387,12 @@ TEST(TaggedLimit, AFlatSheetHasOneNormalWhateverIsSharp)
     EXPECT_GT(compared, 5000u);
 }
 
-// Iterated refinement of a ring against the masks: the limit is what it tends to, and the tangents
-// are what its differences tend to, up to length.
-TEST(TaggedLimit, MasksAreWhatTheRingTendsTo)
+// Iterated refinement of a dart's ring against its masks: the limit is what the ring tends to, and
+// the normal that of the plane which its differences tend to. The second mode of each parity is at
+// most 0.87 of the first for n up to 8 (the smooth vertex's: 0.611 and 0.5), so 30 steps leave
+// 0.87^30 = 0.015 of it: normals within 0.1, where two unlike vectors are 1 apart. The masks do not
+// see steps: a refined ring has the same limit and the same plane, to rounding.
+TEST(TaggedLimit, MasksAreWhatTheRingOfADartTendsTo)
 {
     std::mt19937 random(7);
     auto const point = [&] {
@@ -335,11 +400,16 @@ TEST(TaggedLimit, MasksAreWhatTheRingTendsTo)
         double const x = c(), y = c();
         return Vec(x, y, c());
     };
-    for (std::size_t n = 3; n <= 12; ++n) {
+    auto const normal_of = [](VertexLimit<Vec> const& limit) {
+        return glm::normalize(cross(limit.sides[0].tangents[0], limit.sides[0].tangents[1]));
+    };
+    for (std::size_t n = 2; n <= 12; ++n) {
         Ring<Vec> ring{point(), {}, {}};
         for (std::size_t j = 0; j < n; ++j) {
-            ring.edge.push_back(point());
-            ring.face.push_back(point());
+            // Round the vertex, so that the ring has a side that is outside.
+            double const c = cos_pi(int(2 * j), int(n)), s = sin_pi(int(2 * j), int(n));
+            ring.edge.push_back(ring.vertex + Vec(c, s, 0) + 0.25 * point());
+            ring.face.push_back(ring.vertex + Vec(c - s, s + c, 0) + 0.25 * point());
         }
         RingSharpness dart;
         dart.edge.assign(n, 0);
@@ -347,20 +417,21 @@ TEST(TaggedLimit, MasksAreWhatTheRingTendsTo)
         Limits<CatmullClark> limits;
         VertexLimit<Vec> const limit = limits.of(ring, dart);
         ASSERT_EQ(limit.sides.size(), 1u);
-        Vec const normal =
-            glm::normalize(cross(limit.sides[0].tangents[0], limit.sides[0].tangents[1]));
+        EXPECT_EQ(limit.rule, VertexRule::Dart);
         Ring<Vec> fine = ring;
         for (int step = 0; step < 30; ++step) fine = refined_ring<CatmullClark>(fine, dart);
-        // 30 steps leave at most 0.61^30 = 4e-7 of the differences at n = 12.
-        EXPECT_LE(glm::length(fine.vertex - limit.position), 1e-6) << n;
-        EXPECT_EQ(limit.rule, VertexRule::Dart);
-        // The masks do not see the steps: a refined ring has the same limit and the same plane.
-        Ring<Vec> once = refined_ring<CatmullClark>(ring, dart);
-        VertexLimit<Vec> const again = limits.of(once, dart);
+        EXPECT_LE(glm::length(fine.vertex - limit.position), 1e-5) << n; // 0.64^30 = 1.5e-6
+        if (n >= 3 && n <= 8) {
+            Vec area(0);
+            for (std::size_t j = 0; j < n; ++j)
+                area += cross(fine.edge[j] - fine.vertex, fine.edge_after(j) - fine.vertex);
+            EXPECT_LE(glm::length(glm::normalize(area) - normal_of(limit)), 0.1) << n;
+        }
+        VertexLimit<Vec> const again = limits.of(refined_ring<CatmullClark>(ring, dart), dart);
         EXPECT_LE(glm::length(again.position - limit.position), 1e-13) << n;
-        Vec const same =
-            glm::normalize(cross(again.sides[0].tangents[0], again.sides[0].tangents[1]));
-        EXPECT_LE(glm::length(same - normal), 1e-11) << n;
+        if (n >= 3) {
+            EXPECT_LE(glm::length(normal_of(again) - normal_of(limit)), 1e-11) << n;
+        }
     }
 }
 

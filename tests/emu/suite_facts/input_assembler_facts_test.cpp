@@ -100,6 +100,8 @@ TEST(InputAssemblerFacts, S18G10IndicesStartWhereTheBufferDoesAndPastItsEndTheyA
         call.indices = std::span<std::uint16_t const>();
         EXPECT_EQ(assembled(call), zeros);
     }
+    call.index_count = 0xfffffffeu; // memory for so many is not asked for
+    EXPECT_THROW(assembled(call), LimitError);
     call.index_count = kAllIndices;
     EXPECT_TRUE(assembled(call).empty());
 }
