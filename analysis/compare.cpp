@@ -338,10 +338,26 @@ double quantile(std::vector<double> const& values, std::vector<double> const& we
     return order.empty() ? 0 : values[order.back()];
 }
 
+namespace {
+
+// The refinement of a comparison, which may be more than a machine holds.
+void check_level(RefinedMesh const& mesh, int level)
+{
+    constexpr std::uint64_t kMostQuads = std::uint64_t(1) << 25;
+    if (level > 6) throw LimitError("comparison level", std::uint64_t(level), 6);
+    std::uint64_t const quads = std::uint64_t(mesh.mesh().face_vertices.size())
+                                << (2 * std::max(0, level - 1));
+    if (quads > kMostQuads)
+        throw LimitError("quads of the limit surface at level " + std::to_string(level), quads,
+                         kMostQuads);
+}
+
+} // namespace
+
 EqualParameterErrors equal_parameter_errors(PatchMesh const& patches, FrameSettings settings,
                                             int level, ThreadPool const& threads)
 {
-    if (level > 6) throw LimitError("comparison level", std::uint64_t(level), 6);
+    check_level(patches.mesh(), level);
     LimitSurface const limit(patches.mesh().topology(), level);
     return errors_of(limit, sample_scheme(limit, patches, settings, threads),
                      diagonal_of(patches.mesh().reference()));
@@ -350,8 +366,8 @@ EqualParameterErrors equal_parameter_errors(PatchMesh const& patches, FrameSetti
 SurfaceComparison compare_with_limit(PatchMesh const& patches, FrameSettings settings, int level,
                                      ThreadPool const& threads)
 {
-    if (level > 6) throw LimitError("comparison level", std::uint64_t(level), 6);
     RefinedMesh const& mesh = patches.mesh();
+    check_level(mesh, level);
     LimitSurface const limit(mesh.topology(), level);
     SurfaceComparison out;
     out.diagonal = diagonal_of(mesh.reference());

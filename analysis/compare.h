@@ -46,7 +46,7 @@ private:
                                       std::vector<double> const& weights);
 };
 
-/// \param level  1 to 6: tess factor 2^level
+/// \param level  1 to 6: tess factor 2^level; the limit surface has up to 2^25 quads
 EqualParameterErrors equal_parameter_errors(PatchMesh const& patches, FrameSettings settings,
                                             int level, ThreadPool const& threads);
 

@@ -28,6 +28,9 @@ int run(CompareRequest const& o)
     ThreadPool const threads(o.run.threads);
     Stopwatch const clock;
     SurfaceComparison const c = compare_with_limit(job.patches(), job.frame, o.level, threads);
+    if (c.to_limit.samples == 0 && c.from_limit.samples == 0)
+        throw Error(job.path + ": nothing was compared: no face is drawn, or the surface has no "
+                               "area");
     add_run(job.header, job, threads, clock.seconds());
     std::vector<ErrorRow> const rows{
         error_row("position", "closest point, scheme to limit", "diagonal", c.to_limit),

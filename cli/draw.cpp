@@ -119,7 +119,7 @@ int run_error_view(DrawRequest const& o, Job& job, OutputFile* picture, RunOutpu
     Stopwatch const clock;
     EqualParameterErrors const e = equal_parameter_errors(job.patches(), f, o.level, threads);
     if (e.triangles.empty())
-        throw Error(job.path + ": --view error needs quads, the mesh has none");
+        throw Error(job.path + ": --view error needs quads, and none is drawn");
     double const position =
         o.error_max ? o.error_max->position : quantile(e.distance, e.weight, 0.99);
     double const normal = o.error_max ? o.error_max->angle : quantile(e.angle, e.weight, 0.99);

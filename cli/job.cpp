@@ -129,15 +129,26 @@ std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o, J
     if (!std::isfinite(scale))
         throw Error(fmt::format("--displace-scale is {}: too large for a model of diagonal {}",
                                 *o.displace.scale, job.placement.length_to_file(diagonal)));
-    if (kind == Kind::Studs)
-        return std::make_shared<Displacement>(Displacement::studs(diagonal / 16, scale));
-    HeightImage image = read_height_image(path);
-    try {
-        return std::make_shared<Displacement>(mesh.base_topology(), std::move(image), scale,
-                                              o.displace.wrap.value_or(HeightWrap::Repeat));
-    } catch (Error const& e) {
-        throw Error(job.path + ": " + e.what());
+    std::shared_ptr<Displacement const> out;
+    if (kind == Kind::Studs) {
+        out = std::make_shared<Displacement>(Displacement::studs(diagonal / 16, scale));
+    } else {
+        HeightImage image = read_height_image(path);
+        try {
+            out = std::make_shared<Displacement>(mesh.base_topology(), std::move(image), scale,
+                                                 o.displace.wrap.value_or(HeightWrap::Repeat));
+        } catch (Error const& e) {
+            throw Error(job.path + ": " + e.what());
+        }
     }
+    // Beyond, nothing of the model is left in single precision.
+    float const most = 0x1p20f * diagonal;
+    if (!(out->reach() <= most))
+        throw Error(fmt::format("--displace-scale: it and the heights move points by up to {:g}, "
+                                "the limit is 2^20 diagonals of the model, {:g}",
+                                job.placement.length_to_file(out->reach()),
+                                job.placement.length_to_file(most)));
+    return out;
 }
 
 std::vector<FramePose> make_poses(AnimateRequest const& o, ControlMesh const& mesh)

@@ -11,18 +11,29 @@
 
 namespace tessemu {
 
+namespace {
+
+// The first line of what a reader says, or what it most likely means by saying nothing.
+std::string reason(std::string const& said)
+{
+    return said.empty() ? "the file is cut off or damaged" : said.substr(0, said.find('\n'));
+}
+
+} // namespace
+
 HeightImage read_height_image(std::filesystem::path const& path)
 {
     std::string const name = path.string();
-    if (!std::filesystem::exists(path)) throw FormatError(name, 0, "no such file");
+    std::error_code error;
+    if (!std::filesystem::exists(path, error))
+        throw FormatError(name, 0, error ? error.message() : "no such file");
+    if (!std::filesystem::is_regular_file(path))
+        throw FormatError(name, 0, "is no regular file, which an image must be");
     OIIO::ImageSpec raw; // what asks for numbers as they are
     raw["oiio:UnassociatedAlpha"] = 1;
     raw["oiio:RawColor"] = 1;
     auto const file = OIIO::ImageInput::open(name, &raw);
-    if (!file) {
-        std::string why = OIIO::geterror();
-        throw FormatError(name, 0, "is no picture: " + why.substr(0, why.find('\n')));
-    }
+    if (!file) throw FormatError(name, 0, "is no picture: " + reason(OIIO::geterror()));
     OIIO::ImageSpec const& spec = file->spec();
     HeightImage out;
     out.width = spec.width;
@@ -41,8 +52,11 @@ HeightImage read_height_image(std::filesystem::path const& path)
                           "them");
     int const channel = spec.alpha_channel == 0 && spec.nchannels > 1 ? 1 : 0;
     out.heights.resize(std::size_t(spec.width) * std::size_t(spec.height));
-    if (!file->read_image(0, 0, channel, channel + 1, OIIO::TypeDesc::FLOAT, out.heights.data()))
-        throw FormatError(name, 0, "cannot be read: " + file->geterror());
+    bool const is_read =
+        file->read_image(0, 0, channel, channel + 1, OIIO::TypeDesc::FLOAT, out.heights.data());
+    // Some readers report what they could not decode and go on.
+    if (!is_read || file->has_error())
+        throw FormatError(name, 0, "cannot be read: " + reason(file->geterror()));
     for (std::size_t i = 0; i < out.heights.size(); ++i)
         if (!std::isfinite(out.heights[i]))
             throw FormatError(name, 0,

@@ -207,6 +207,12 @@ TEST(HeightMap, OptionsThatNeedItAreRefusedWithoutIt)
          "repeat, clamp or mirror"},
         {"export " + cage + " --normals displaced" + mesh, "--normals displaced needs --displace"},
         {"draw " + cage + " --displace " + image + " --normals displaced", "frozen or true"},
+        {"export " + cage + " --displace " + image + " --displace-scale 1e30" + mesh,
+         "the limit is 2^20 diagonals"},
+        {"draw " + cage + " --displace studs --displace-scale 1e30 -o a.png",
+         "the limit is 2^20 diagonals"},
+        {"export " + cage + " --displace /dev/zero" + mesh, "/dev/zero: is no regular file"},
+        {"compare golem --subdivide 6 --level 6", "quads of the limit surface at level 6"},
     };
     for (auto const& [command, says] : rows) {
         test::Result const r = run(command);

@@ -7,6 +7,7 @@
 #include "tests/io/raw_image.h"
 
 #include <cmath>
+#include <fstream>
 
 #include <unistd.h>
 
@@ -108,6 +109,23 @@ TEST_F(HeightImages, NamesTheTexelThatIsNoHeight)
                           std::vector<float>{0, 1, 2, 3, 4, std::nanf("")});
     EXPECT_NE(refusal(here / "nan.exr").find("texel 2, 1 is "), std::string::npos)
         << refusal(here / "nan.exr");
+}
+
+// The TIFF reader tells of a strip that it cannot decode, and goes on with what memory holds.
+TEST_F(HeightImages, RefusesWhatAReaderCouldNotDecode)
+{
+    std::vector<float> heights; // that compress
+    for (int i = 0; i < 64 * 64; ++i) heights.push_back(float(i % 61 * (i % 7)));
+    fs::path const path = here / "damaged.tif";
+    test::write_raw_image<float>(path, 64, 64, {"Y"}, heights);
+    EXPECT_EQ(refusal(path), "");
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(std::streamoff(fs::file_size(path) / 8));
+    file << std::string(fs::file_size(path) / 8, '\xff');
+    file.close();
+    EXPECT_NE(refusal(path).find("damaged.tif: cannot be read: "), std::string::npos)
+        << refusal(path);
+    EXPECT_NE(refusal(here).find("is no regular file"), std::string::npos);
 }
 
 TEST_F(HeightImages, NamesTheLimitOfItsSize)
