@@ -8,6 +8,7 @@
 #include "tests/support/files.h"
 #include "tests/support/machines.h"
 #include "tests/support/printed.h"
+#include "tests/support/shapes.h"
 #include "tests/support/stencil_patch.h"
 
 #include <gtest/gtest.h>
@@ -59,15 +60,10 @@ TEST(Compare, SeesAChangedScheme)
 // round to units of 2^-24, in coordinates of up to 1 in a diagonal of 3.46.
 TEST(Compare, ASmoothedCreaseIsAnError)
 {
-    ControlMesh cube;
-    for (int k = 0; k < 8; ++k)
-        cube.positions.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-    for (std::vector<std::uint32_t> const& face : std::vector<std::vector<std::uint32_t>>{
-             {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}) {
-        cube.add_face(face);
+    ControlMesh cube = test::cube().mesh;
+    for (std::uint32_t f = 0; f < 6; ++f)
         for (std::size_t k = 0; k < 4; ++k)
-            cube.creases.push_back({face[k], face[(k + 1) % 4], kInfinitelySharp});
-    }
+            cube.creases.push_back({cube.face(f)[k], cube.face(f)[(k + 1) % 4], kInfinitelySharp});
     for (char const* scheme : {"gregory-stencil", "gregory-two-stage", "acc", "pm"}) {
         SurfaceComparison const c = compare(cube, scheme, 3);
         EXPECT_NEAR(c.equal_position.max, 0.25, 8 * 0x1p-24) << scheme;

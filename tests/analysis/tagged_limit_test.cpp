@@ -9,6 +9,7 @@
 #include "tests/support/files.h"
 #include "tests/support/gzip.h"
 #include "tests/support/random_mesh.h"
+#include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -329,12 +330,7 @@ TEST(TaggedLimit, DoesNotDependOnTheLevel)
 // edge sums 6 terms that weigh 16 in all, and has the length 6 cells of 1/2: normals have 32 units.
 TEST(TaggedLimit, ASharpCubeIsACubeAndTheSmoothOneAQuarterOfTheDiagonalOff)
 {
-    ControlMesh cube;
-    for (int k = 0; k < 8; ++k)
-        cube.positions.emplace_back(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
-    for (std::vector<std::uint32_t> const& face : std::vector<std::vector<std::uint32_t>>{
-             {0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}})
-        cube.add_face(face);
+    ControlMesh cube = test::cube().mesh;
     Topology const topology(cube);
     LimitSurface const smooth(topology, 2);
     for (HalfEdge h = 0; h < cube.face_vertices.size(); ++h)
