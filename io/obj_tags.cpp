@@ -144,7 +144,12 @@ void ObjTags::apply(Tag const& t, std::size_t vertices)
     } else if (t.name == "interpolateboundary") {
         if (t.ints.size() != 1)
             return left_out("tag 'interpolateboundary' has not one integer: skipped");
-        if (in_range(t, t.ints[0], 3, "rule")) mesh_.boundary = BoundaryRule(t.ints[0]);
+        if (t.ints[0] < 0 || t.ints[0] > 2)
+            return left_out(fmt::format("tag 'interpolateboundary' is {}, known are 0 (none), 1 "
+                                        "(edge and corner) and 2 (edge only): skipped",
+                                        t.ints[0]),
+                            "interpolateboundary");
+        mesh_.boundary = BoundaryRule(t.ints[0]);
     } else if (t.name == "creasemethod") {
         if (auto const is_second = one_of(t, "normal", "chaikin"))
             mesh_.crease_method = *is_second ? CreaseMethod::Chaikin : CreaseMethod::Normal;

@@ -398,6 +398,9 @@ TEST(ObjReader, WarnsOfEachKindOfLineThatIsLost)
               "more)"},
              {"t hole 1/0/0 1 2\n",
               "tag 'hole' announces 1/0/0 values and has 2: the rest is left out"},
+             {"t interpolateboundary 1/0/0 3\n",
+              "tag 'interpolateboundary' is 3, known are 0 (none), 1 (edge and corner) and 2 (edge "
+              "only): skipped"},
              {"t creasemethod 0/0/1 chalkin\n",
               "tag 'creasemethod' is 'chalkin', known are 'normal' and 'chaikin': skipped"},
              {"t smoothtriangles 1/0/0 2\n",
