@@ -108,7 +108,7 @@ void LimitSurface::add_points(Topology const& t, std::vector<Vec> const& x)
     for (std::uint32_t v = 0; v < x.size(); ++v) {
         auto const ring = t.ring(v);
         if (ring.empty()) continue;
-        if (sharpness.is_plain(v)) {
+        if (sharpness.is_plain(v)) { // nearly all: no ring is copied
             auto const edge = [&](std::size_t j) -> Vec const& {
                 return x[t.vertex_of(t.next(ring[j]))];
             };

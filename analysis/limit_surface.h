@@ -22,8 +22,7 @@ public:
     /// \param level      refinements, 1 to 7: each face of n sides becomes n 4^(level-1) quads
     /// \param positions  in place of the mesh's, which are single precision; empty: those
     /// \cost  memory and time linear in the quads
-    explicit LimitSurface(Topology const& topology, int level,
-                          std::span<glm::dvec3 const> positions = {});
+    LimitSurface(Topology const& topology, int level, std::span<glm::dvec3 const> positions = {});
 
     int level() const { return level_; }
     int grid() const { return 1 << level_; } ///< segments along an edge of a base quad

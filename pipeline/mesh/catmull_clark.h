@@ -18,16 +18,12 @@ struct CatmullClark {
     static constexpr bool kFacePoints = true;
 
     template <class X> static X face(X const& sum, int sides) { return sum / double(sides); }
-    template <class X> static X edge(X const& a, X const& b, X const& left, X const& right)
-    {
-        return (a + b + left + right) / 4.0;
-    }
-    /// Of an edge at one or two triangles, with OpenSubdiv's smoothtriangles: the faces' points
-    /// weigh 0.47 on a triangle's side and 1/4 on another's, each the mean of both.
+    /// At triangles to be smoothed the faces' points weigh 0.47 on a triangle's side and 1/4 on
+    /// another's, each the mean of both (OpenSubdiv's smoothtriangles).
     template <class X>
-    static X smooth_triangle_edge(X const& a, X const& b, X const& left, X const& right,
-                                  int triangles)
+    static X edge(X const& a, X const& b, X const& left, X const& right, int triangles)
     {
+        if (triangles == 0) return (a + b + left + right) / 4.0;
         double const w = triangles == 2 ? 0.47 : 0.5 * (0.47 + 0.25);
         return (a + b) * (0.5 * (1 - 2 * w)) + (left + right) * w;
     }

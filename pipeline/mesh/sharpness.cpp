@@ -54,14 +54,13 @@ std::array<std::size_t, 2> RingSharpness::crease() const
 
 std::array<float, 2> RingSharpness::halves(std::size_t j) const
 {
-    if (method == CreaseMethod::Normal) return {decremented(edge[j]), decremented(edge[j])};
+    if (far_end.empty()) return {decremented(edge[j]), decremented(edge[j])};
     return {here.decremented_here(edge[j]), far_end[j].decremented_here(edge[j])};
 }
 
 RingSharpness RingSharpness::after_step() const
 {
     RingSharpness out;
-    out.method = method;
     out.open = open;
     out.vertex = decremented(vertex);
     for (std::size_t j = 0; j < edge.size(); ++j) {
@@ -88,9 +87,8 @@ double fractional_weight(RingSharpness const& now, RingSharpness const& after)
     return count ? std::min(1.0f, sum / float(count)) : 0.0f;
 }
 
-double crease_weight(float sharpness, std::array<float, 2> halves, CreaseMethod method)
+double crease_weight(float sharpness, std::array<float, 2> halves)
 {
-    if (method == CreaseMethod::Normal) return std::min(1.0f, sharpness);
     return halves[0] > 0 && halves[1] > 0 ? 1 : sharpness;
 }
 
@@ -131,7 +129,6 @@ float Sharpness::vertex(std::uint32_t v) const
 void Sharpness::around(std::uint32_t v, RingSharpness& out) const
 {
     auto const ring = topology_->ring(v);
-    out.method = end_.empty() ? CreaseMethod::Normal : CreaseMethod::Chaikin;
     out.open = topology_->is_boundary(v);
     out.vertex = vertex(v);
     out.edge.clear();

@@ -35,7 +35,6 @@ struct SharpEnd {
 
 /// The edges around a vertex, in the order of Topology::ring.
 struct RingSharpness {
-    CreaseMethod method = CreaseMethod::Normal;
     bool open = false;       ///< on the boundary: edge[0] and edge.back() are infinitely sharp
     float vertex = 0;        ///< the vertex's own
     std::vector<float> edge; ///< as many as faces, and one more where it is open
@@ -61,7 +60,7 @@ double fractional_weight(RingSharpness const& now, RingSharpness const& after);
 /// How much of the midpoint an edge's new point has, of `sharpness` above 0 and with such halves
 /// after the step; the rest is the smooth edge point. With Chaikin's rule more than all, up to 4/3,
 /// where a half ends that was sharper than 1: OpenSubdiv's refinement does so.
-double crease_weight(float sharpness, std::array<float, 2> halves, CreaseMethod method);
+double crease_weight(float sharpness, std::array<float, 2> halves);
 
 /// A mesh's tags by edge and vertex. Boundary edges are infinitely sharp, and so is a vertex with
 /// one face unless the boundary rule smooths it.

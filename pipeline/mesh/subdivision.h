@@ -5,15 +5,15 @@
 //
 //     kFacePoints               whether faces' points are vertices of the refined mesh
 //     face(sum, sides)          point of a face, of the sum of its vertices
-//     edge(a, b, left, right)   of a smooth edge and the points of its faces
-//     smooth_triangle_edge(a, b, left, right, triangles)  the same with `smoothtriangles smooth`
+//     edge(a, b, left, right, triangles)  of a smooth edge and the points of its faces, so many of
+//                               them triangles to be smoothed (`smoothtriangles smooth`)
 //     vertex(n, v, edges, faces)  of a smooth vertex, the sums of its edges' far ends and of its
 //                               faces' points
 //     crease_edge(a, b), crease_vertex(a, v, b)  along a crease or boundary
 //
 // Points are of any type X that can be added, and multiplied and divided by a number: positions,
 // or rows of weights. A triangle's third vertex is 3 F - a - b of its mean F, so Loop's edge points
-// are edge(a, b, F, F') too. Where sharpness blends rules: docs/math/subdivision.md, 1.7.
+// are edge(a, b, F, F', 0) too. Where sharpness blends rules: docs/math/subdivision.md, 1.7.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -97,17 +97,15 @@ std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpne
         if (other != Topology::kNone && other < h) continue;
         X const &a = x[topology.vertex_of(h)], &b = x[topology.vertex_of(topology.next(h))];
         float const s = sharpness.edge(h);
-        double const w = s > 0 ? crease_weight(s, sharpness.halves(h), mesh.crease_method) : 0;
+        double const w = s > 0 ? crease_weight(s, sharpness.halves(h)) : 0;
         if (w == 1) {
             out.push_back(Masks::crease_edge(a, b));
             continue;
         }
         std::uint32_t const f = topology.face_of(h), g = topology.face_of(other);
-        bool const triangles[] = {mesh.face(f).size() == 3, mesh.face(g).size() == 3};
-        X const smooth = mesh.smooth_triangles && (triangles[0] || triangles[1])
-                             ? Masks::smooth_triangle_edge(a, b, face_point[f], face_point[g],
-                                                           triangles[0] + triangles[1])
-                             : Masks::edge(a, b, face_point[f], face_point[g]);
+        int const triangles =
+            mesh.smooth_triangles ? (mesh.face(f).size() == 3) + (mesh.face(g).size() == 3) : 0;
+        X const smooth = Masks::edge(a, b, face_point[f], face_point[g], triangles);
         out.push_back(w == 0 ? smooth : smooth * (1 - w) + Masks::crease_edge(a, b) * w);
     }
     if constexpr (Masks::kFacePoints) out.insert(out.end(), face_point.begin(), face_point.end());
@@ -148,14 +146,14 @@ Ring<X> refined_ring(Ring<X> const& ring, RingSharpness const& sharp)
     Ring<X> out{vertex_point<Masks>(sharp, ring.faces(), ring.vertex, edge, face), {}, {}};
     for (std::size_t j = 0; j < ring.edge.size(); ++j) {
         float const s = sharp.edge[j];
-        double const w = s > 0 ? crease_weight(s, sharp.halves(j), sharp.method) : 0;
+        double const w = s > 0 ? crease_weight(s, sharp.halves(j)) : 0;
         X const middle = Masks::crease_edge(ring.vertex, ring.edge[j]);
         if (w == 1) {
             out.edge.push_back(middle);
             continue;
         }
-        X const smooth =
-            Masks::edge(ring.vertex, ring.edge[j], face_point[j], face_point[ring.face_before(j)]);
+        X const smooth = Masks::edge(ring.vertex, ring.edge[j], face_point[j],
+                                     face_point[ring.face_before(j)], 0);
         out.edge.push_back(w == 0 ? smooth : smooth * (1 - w) + middle * w);
     }
     out.face = std::move(face_point);

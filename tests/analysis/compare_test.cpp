@@ -57,7 +57,8 @@ TEST(Compare, SeesAChangedScheme)
 
 // A cube with sharp edges is its own limit surface; a scheme that draws it smooth has its corners at
 // half their distance from the centre, which is half a diagonal. Corners are sums of floats that
-// round to units of 2^-24, in coordinates of up to 1 in a diagonal of 3.46.
+// round to units of 2^-24, in coordinates of up to 1 in a diagonal of 3.46; seven products are
+// summed, and an eighth rounding is the difference's.
 TEST(Compare, ASmoothedCreaseIsAnError)
 {
     ControlMesh cube = test::cube().mesh;

@@ -432,7 +432,8 @@ TEST(TaggedLimit, MasksAreWhatTheRingOfADartTendsTo)
 }
 
 // Along a crease of two faces a side the surface is a bicubic on each, so its cross tangent is that
-// of a B-spline: (-1 -4 -1, 4 of the row inside, 1 beside it)/6; k = 2 in the general mask.
+// of a B-spline: (-1 -4 -1, 4 of the row inside, 1 beside it)/6; k = 2 in the general mask, where a
+// weight is a quotient of sums of three products of up to 4: eight roundings of 2^-52 each.
 TEST(TaggedLimit, ARegularCreaseHasTheBSplinesTangent)
 {
     for (int at = 0; at < 6; ++at) {
