@@ -123,7 +123,7 @@ std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o, J
     using Kind = DisplaceRequest::Heights::Kind;
     auto const& [kind, path] = o.displace.heights;
     if (kind == Kind::None) return {};
-    float const diagonal = diagonal_of(mesh.reference());
+    float const diagonal = diagonal_of(mesh.base());
     float const scale = o.displace.scale ? float(job.placement.length_from_file(*o.displace.scale))
                                          : 0.01f * diagonal;
     if (!std::isfinite(scale))
@@ -166,7 +166,7 @@ std::vector<FramePose> make_poses(AnimateRequest const& o, ControlMesh const& me
 // All that the frames will show, about.
 std::vector<glm::vec3> points_to_show(Job const& job, AnimateRequest const& animate)
 {
-    ControlMesh const& mesh = job.surface.mesh->reference();
+    ControlMesh const& mesh = job.surface.mesh->base();
     std::vector<glm::vec3> points;
     for (FramePose const& f : make_poses(animate, mesh))
         for (std::size_t v = 0; v < mesh.positions.size(); ++v)

@@ -62,6 +62,20 @@ VertexSource add_vertices(CommandList& list, RefinedMesh const& refined,
     return {std::span(*points).subspan(first * stride), 3, room.stride};
 }
 
+std::vector<glm::vec3> drawn_positions(RefinedMesh const& mesh, SurfaceSettings const& settings,
+                                       ThreadPool const& threads)
+{
+    CommandList list;
+    VertexSource const points = add_vertices(list, mesh, settings);
+    run_commands(list, threads);
+    std::vector<glm::vec3> out;
+    for (std::size_t v = 0; v < mesh.mesh().positions.size(); ++v) {
+        float const* const p = points.floats.data() + v * std::size_t(points.stride);
+        out.emplace_back(p[0], p[1], p[2]);
+    }
+    return out;
+}
+
 std::span<float const> add_pole_normals(CommandList& list, Poles const& poles,
                                         VertexSource const& positions, Machine const& machine,
                                         char const* name)

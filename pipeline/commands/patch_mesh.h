@@ -77,6 +77,10 @@ struct VertexRoom {
 VertexSource add_vertices(CommandList& list, RefinedMesh const& mesh,
                           SurfaceSettings const& settings, VertexRoom const& room = {});
 
+/// The drawn mesh's positions by vertex, as its dispatches make them in the settings' pose.
+std::vector<glm::vec3> drawn_positions(RefinedMesh const& mesh, SurfaceSettings const& settings,
+                                       ThreadPool const& threads);
+
 /// Appends a dispatch of the poles' normals, where there are poles; PoleNormals reads them.
 ///
 /// \param name       of the dispatch

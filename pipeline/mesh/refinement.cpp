@@ -3,11 +3,10 @@
 
 namespace tessemu {
 
-RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step, int own_steps)
+RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step)
     : base_(std::make_unique<ControlMesh const>(std::move(mesh))),
       base_topology_(std::make_unique<Topology const>(*base_)),
-      steps_(steps),
-      own_steps_(own_steps)
+      steps_(steps)
 {
     static_assert(kMaxSteps <= PatchPlace::kMaxLevel);
     if (steps < 0)
@@ -37,8 +36,6 @@ RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step, int o
         topology_.reset(); // reads mesh_
         mesh_ = std::move(fine);
         topology_ = std::make_unique<Topology const>(*mesh_);
-        if (s + 1 == own_steps && own_steps < steps)
-            reference_ = std::make_unique<ControlMesh const>(*mesh_);
     }
 }
 

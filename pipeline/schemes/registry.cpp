@@ -295,13 +295,13 @@ SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const
     int const own = steps_of(info.takes, polygons > 0, 0);
     if (must_be_taken) refuse(info, facts_of(Topology(mesh)), options.subdivide); // before the work
     out.mesh = std::make_shared<RefinedMesh const>(std::move(mesh), own + options.subdivide,
-                                                   info.takes.step, own);
+                                                   info.takes.step);
     RefinedMesh const& refined = *out.mesh;
     if (polygons && own > 0)
         warn(out, options,
              {std::to_string(polygons) + " faces have more than 4 sides (up to " +
               std::to_string(largest) + "): one Catmull-Clark step makes " +
-              std::to_string(refined.reference().faces()) + " quads of the mesh's " +
+              std::to_string(refined.base().face_vertices.size()) + " quads of the mesh's " +
               std::to_string(refined.base().faces()) + " faces"});
     return out;
 }
