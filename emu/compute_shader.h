@@ -103,7 +103,7 @@ private:
 /// buffer[i] per lane, as memory is now.
 template <class T, int N> float3<T> load3(RWVectorBuffer const& b, IntLanes<N> i)
 {
-    detail::count_fetch<T>(b.slot(), i, b.vectors());
+    detail::count_fetch<T>(b.slot(), i);
     auto const vectors = std::int32_t(b.vectors());
     Mask<N> const inside = (IntLanes<N>(-1) < i) & (i < IntLanes<N>(vectors));
     Lanes<N> v[3] = {0.0f, 0.0f, 0.0f};

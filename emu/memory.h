@@ -126,8 +126,7 @@ template <int N> bool is_run(IntLanes<N> index, std::size_t size)
            all(index - IntLanes<N>::iota() == IntLanes<N>(index.raw[0]));
 }
 
-template <class T, int N>
-void count_fetch(int slot, IntLanes<N> index, std::size_t size, bool run = false)
+template <class T, int N> void count_fetch(int slot, IntLanes<N> index, bool run = false)
 {
     if constexpr (ScalarTraits<T>::kCounted) {
         execution.features |= kFetches;
@@ -196,7 +195,7 @@ template <class T, class E, int N> auto load(Buffer<E> const& buffer, IntLanes<N
 {
     std::span<E const> const e = buffer.elements();
     bool const run = sizeof(E) == 4 && detail::is_run(i, e.size());
-    detail::count_fetch<T>(buffer.slot(), i, e.size(), run);
+    detail::count_fetch<T>(buffer.slot(), i, run);
     std::conditional_t<std::floating_point<E>, Lanes<N>, IntLanes<N>> r(0);
     if (run) {
         __builtin_memcpy(&r.raw, e.data() + i.raw[0], sizeof r.raw);

@@ -354,6 +354,16 @@ std::string diff_report(ReportHeader const& header, std::vector<ResultValue> con
     return finish(std::move(j), header, [](Sha256&) {});
 }
 
+namespace {
+
+// Equal numbers have the ratio 1, zeros too.
+double ratio_of(PaperRow const& r)
+{
+    return r.ours == r.paper ? 1 : r.ours / r.paper;
+}
+
+} // namespace
+
 std::string paper_report(ReportHeader const& header, std::string const& title,
                          std::vector<PaperRow> const& rows, std::vector<std::string> const& remarks)
 {
@@ -365,7 +375,7 @@ std::string paper_report(ReportHeader const& header, std::string const& title,
                               {"column", r.column},
                               {"paper", r.paper},
                               {"ours", r.ours},
-                              {"ratio", r.ours / r.paper}});
+                              {"ratio", to_json(ratio_of(r))}});
     j["remarks"] = remarks;
     return finish(std::move(j), header, [](Sha256&) {});
 }
@@ -378,7 +388,7 @@ std::string paper_table(std::string const& title, std::vector<PaperRow> const& r
     std::string row;
     for (PaperRow const& r : rows) {
         out += fmt::format("{:<38} {:<46} {:>9.4g} {:>9.4g} {:>6.2f}\n", r.row == row ? "" : r.row,
-                           r.column, r.paper, r.ours, r.ours / r.paper);
+                           r.column, r.paper, r.ours, ratio_of(r));
         row = r.row;
     }
     for (std::string const& remark : remarks) out += "\n" + remark + "\n";
