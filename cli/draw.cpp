@@ -7,6 +7,7 @@
 #include "io/figure.h"
 #include "io/image_writer.h"
 #include "pipeline/colored_mesh.h"
+#include "pipeline/patch_valences.h"
 
 #include <fmt/format.h>
 
@@ -214,12 +215,16 @@ int run(DrawRequest const& o)
     bar.clear();
     expect_something(covered, o, job);
     add_run(job.header, job, threads, clock.seconds());
+    std::string const legend =
+        !cage && f.view == View::Valence ? valence_legend(job.patches()) + "\n" : std::string();
     if (!sequence.empty()) {
-        out.finish([&] { return sequence_report(job.header, sequence); }, sequence_table(sequence));
+        out.finish([&] { return sequence_report(job.header, sequence); },
+                   legend + sequence_table(sequence));
         return 0;
     }
     if (picture) write_image(frame.color, *picture);
-    out.finish([&] { return draw_report(job.header, frame); }, counters_table(frame.statistics));
+    out.finish([&] { return draw_report(job.header, frame); },
+               legend + counters_table(frame.statistics));
     return 0;
 }
 
@@ -247,8 +252,9 @@ void add_draw(CommandLine& program)
     add_options(verb, o->picture);
     verb.option(
         "--view", o->view, view_parser(),
-        "lit, normals, patches, depth, wire, coverage: how often a pixel is covered, before "
-        "depth; cage: the control mesh; error: against the Catmull-Clark limit surface",
+        "lit, normals, patches, depth, wire; valence: patches by that of their extraordinary "
+        "vertex; coverage: how often a pixel is covered, before depth; cage: the control mesh; "
+        "error: against the Catmull-Clark limit surface",
         "lit");
     verb.option("--error-max", o->error_max, parse_error_max,
                 "of the error view: POSITION,ANGLE that are red, in diagonals and radians; auto: "

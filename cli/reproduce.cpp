@@ -42,7 +42,7 @@ PaperInput load_input(ReproduceRequest const& o, ReportHeader& header)
             header.warnings.push_back(std::move(w));
         in.meshes.push_back(std::move(model.mesh));
     }
-    if (!o.item->gpu.empty()) in.gpu = load_gpu_model(o.item->gpu);
+    for (std::string const& gpu : o.item->gpus) in.gpus.push_back(load_gpu_model(gpu));
     in.level = o.level.value_or(o.item->level);
     FrameSettings& panel = in.picture;
     panel.width = panel.height = 360;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace tessemu {
@@ -297,12 +298,16 @@ std::string info_report(ReportHeader const& header, MeshSummary const& s,
                  {"interior_valences", pairs(s.interior_valences)},
                  {"boundary_valences", pairs(s.boundary_valences)}};
     j["patches"] = Json::array();
-    for (PatchCount const& c : patches)
-        j["patches"].push_back({{"kind", c.kind.name},
-                                {"patches", c.patches},
-                                {"connectivity_types", c.types},
-                                {"min_inputs", c.min_inputs},
-                                {"max_inputs", c.max_inputs}});
+    for (PatchCount const& c : patches) {
+        Json kind{{"kind", c.kind.name},
+                  {"patches", c.patches},
+                  {"connectivity_types", c.types},
+                  {"min_inputs", c.min_inputs},
+                  {"max_inputs", c.max_inputs}};
+        for (auto const& [type, n] : c.valence_types)
+            kind["valence_types"].push_back({{"valences", type.valence}, {"patches", n}});
+        j["patches"].push_back(std::move(kind));
+    }
     return finish(std::move(j), header, [](Sha256&) {});
 }
 
@@ -528,6 +533,41 @@ std::string counters_table(DrawStatistics const& s)
     return out;
 }
 
+namespace {
+
+// LOOP10's types that the patches are of, those of most patches first.
+std::string valence_table(std::vector<PatchCount> const& patches)
+{
+    constexpr std::size_t kShown = 12, kALine = 4;
+    std::vector<std::pair<ValenceType, std::size_t>> used;
+    for (PatchCount const& c : patches)
+        used.insert(used.end(), c.valence_types.begin(), c.valence_types.end());
+    if (used.empty()) return "";
+    std::stable_sort(used.begin(), used.end(),
+                     [](auto const& a, auto const& b) { return a.second > b.second; });
+    auto const count = [&](auto const& is) {
+        return std::count_if(used.begin(), used.end(), [&](auto const& t) { return is(t.first); });
+    };
+    auto const known = count([](ValenceType const&t) { return t.is_of_loop10(); }),
+               isolated =
+                   count([](ValenceType const&t) { return t.is_of_loop10() && t.is_isolated(); });
+    std::string out = fmt::format(
+        "\nvalences of a quad's corners: {} types, {} of LOOP10's {}, {} of its {} with one "
+        "extraordinary vertex or none\n",
+        used.size(), known, valence_types().size(), isolated, isolated_valence_types().size());
+    for (std::size_t i = 0; i < std::min(kShown, used.size()); ++i) {
+        auto const& [type, n] = used[i];
+        bool const last = i % kALine == kALine - 1 || i + 1 == std::min(kShown, used.size());
+        std::string const valences = fmt::format("{}", fmt::join(type.valence, " "));
+        out += last ? fmt::format("  {:<11} {}\n", valences, n)
+                    : fmt::format("  {:<11} {:<7}", valences, n);
+    }
+    if (used.size() > kShown) out += fmt::format("  and {} more\n", used.size() - kShown);
+    return out;
+}
+
+} // namespace
+
 std::string info_table(MeshSummary const& s, std::vector<PatchCount> const& patches)
 {
     std::string out = fmt::format(
@@ -546,7 +586,7 @@ std::string info_table(MeshSummary const& s, std::vector<PatchCount> const& patc
                            c.min_inputs == c.max_inputs
                                ? std::to_string(c.min_inputs)
                                : fmt::format("{}-{}", c.min_inputs, c.max_inputs));
-    return out;
+    return out + valence_table(patches);
 }
 
 } // namespace tessemu

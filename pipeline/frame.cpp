@@ -2,6 +2,7 @@
 #include "pipeline/frame.h"
 
 #include "pipeline/commands/direct3d10.h"
+#include "pipeline/patch_valences.h"
 #include "shaders_cpp/pixel/bumped_view.h"
 
 #include <glm/geometric.hpp>
@@ -17,6 +18,8 @@ std::string_view name_of(View view)
         return "normals";
     case View::Patches:
         return "patches";
+    case View::Valence:
+        return "valence";
     case View::Depth:
         return "depth";
     case View::Wire:
@@ -41,23 +44,32 @@ PixelShader on_surface(Shader const& view, Displacement const* displacement, Mac
     return bind_pixel_shader(
         BumpedView<Shader>{view, displacement->height_map(), displacement->scale()}, machine);
 }
+
+std::array<float, 3> as_array(glm::vec3 v)
+{
+    return {v.x, v.y, v.z};
+}
+
+// A key light over the viewer's left shoulder.
+glm::vec3 key_light(Camera const& camera)
+{
+    return glm::normalize(-0.5f * camera.right() + 0.62f * camera.true_up() +
+                          0.6f * camera.backward());
+}
 } // namespace
 
 PixelShader make_view(View view, PatchKind const& kind, Camera const& camera,
                       Displacement const* displacement, Machine const& machine)
 {
-    auto const array = [](glm::vec3 v) { return std::array<float, 3>{v.x, v.y, v.z}; };
-    // A key light over the viewer's left shoulder.
-    glm::vec3 const light = glm::normalize(-0.5f * camera.right() + 0.62f * camera.true_up() +
-                                           0.6f * camera.backward());
+    glm::vec3 const light = key_light(camera);
     switch (view) {
     case View::Lit:
     case View::Wire:
     case View::Coverage: {
         LitPixelShader s;
-        s.light = array(light);
-        s.half = array(glm::normalize(light + camera.backward()));
-        s.up = array(camera.true_up());
+        s.light = as_array(light);
+        s.half = as_array(glm::normalize(light + camera.backward()));
+        s.up = as_array(camera.true_up());
         return on_surface(s, displacement, machine);
     }
     case View::Normals:
@@ -65,7 +77,7 @@ PixelShader make_view(View view, PatchKind const& kind, Camera const& camera,
     case View::Patches: {
         PatchPixelShader s;
         s.color = color_of(kind.patch_class);
-        s.light = array(light);
+        s.light = as_array(light);
         return on_surface(s, displacement, machine);
     }
     default: {
@@ -159,6 +171,27 @@ void add_wires(CommandList& list, FrameSettings const& s, RasterizerState lines)
     for (Draw& d : wires) list.commands.emplace_back(std::move(d));
 }
 
+// A colour for each patch, by its valence.
+void show_valences(CommandList& list, RefinedMesh const& mesh, FrameSettings const& s)
+{
+    if (s.direct3d10)
+        throw Error("the valence view tells patches apart by SV_PrimitiveID, which the Direct3D 10 "
+                    "path has of triangles; 'patches' is a view that it has");
+    PatchValences const valences(mesh);
+    PatchColorPixelShader view;
+    view.light = as_array(key_light(s.camera));
+    list.for_each_surface_draw([&](Draw& d) {
+        auto const colors = std::make_shared<std::vector<float>>();
+        for (PatchPlace const& p : d.patches) {
+            std::array<float, 3> const color = valences(p).color();
+            colors->insert(colors->end(), color.begin(), color.end());
+        }
+        view.colors = {*colors, PatchColorPixelShader::kSlot, "patch_colors"};
+        d.pipeline.pixel_shader = on_surface(view, s.displacement.get(), s.machine);
+        list.memory.push_back(colors);
+    });
+}
+
 void paint_coverage(FrameSettings const& s, Frame& frame)
 {
     for (int y = 0; y < s.height; ++y)
@@ -189,10 +222,13 @@ void draw_frame(PatchMesh const& mesh, FrameSettings const& s, ThreadPool const&
         raster.coverage = frame.coverage.get();
     }
     CommandList list = frame_commands(mesh, s, seen_surface(s));
-    list.for_each_surface_draw([&](Draw& d) {
-        d.pipeline.pixel_shader =
-            make_view(s.view, d.kind, s.camera, s.displacement.get(), s.machine);
-    });
+    if (s.view == View::Valence)
+        show_valences(list, mesh.mesh(), s);
+    else
+        list.for_each_surface_draw([&](Draw& d) {
+            d.pipeline.pixel_shader =
+                make_view(s.view, d.kind, s.camera, s.displacement.get(), s.machine);
+        });
     if (s.view == View::Wire) add_wires(list, s, raster.rasterizer);
     ListStatistics statistics =
         run_commands(list, threads, {&raster, {}, s.vertex_cache, &frame.memory, progress});

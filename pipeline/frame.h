@@ -11,13 +11,14 @@
 
 namespace tessemu {
 
-enum class View { Lit, Normals, Patches, Depth, Wire, Coverage };
+enum class View { Lit, Normals, Patches, Valence, Depth, Wire, Coverage };
 std::string_view name_of(View view);
 std::optional<View> view_from_name(std::string_view name);
-inline constexpr View kViews[] = {View::Lit,   View::Normals, View::Patches,
+inline constexpr View kViews[] = {View::Lit,   View::Normals, View::Patches, View::Valence,
                                   View::Depth, View::Wire,    View::Coverage};
 
-/// The pixel shader of a view; on a displaced surface normals follow the height map.
+/// The pixel shader of a view; on a displaced surface normals follow the height map. That of the
+/// valence view depends on the patches: draw_frame makes it.
 PixelShader make_view(View view, PatchKind const& kind, Camera const& camera,
                       Displacement const* displacement, Machine const& machine);
 
@@ -74,6 +75,8 @@ struct Frame {
 
 /// Clears the frame and runs all commands in order. The frame was made for the same size, format
 /// and samples. The wire view draws the surface first and then its edges over it, and counts both;
+/// the valence view paints patches by PatchValence, and takes no Direct3D 10 path, whose pixels do
+/// not know their patch: throws Error;
 /// the coverage view paints how often a pixel's first sample was covered: grey not at all, blue to
 /// white an even number of times, orange an odd number.
 void draw_frame(PatchMesh const& mesh, FrameSettings const& settings, ThreadPool const& threads,

@@ -9,7 +9,6 @@
 #include "pipeline/frame.h"
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -55,7 +54,7 @@ struct PaperModel {
 
 struct PaperInput {
     std::vector<ControlMesh> meshes; ///< those of PaperItem::models that are there, in that order
-    std::optional<GpuModel> gpu;     ///< PaperItem::gpu
+    std::vector<GpuModel> gpus;      ///< PaperItem::gpus
     int level = 0;                   ///< of a comparison; PaperItem::level by default
     Machine machine;
     FrameSettings picture; ///< of a figure's panel: size, samples, background, tess factor
@@ -67,8 +66,8 @@ struct PaperItem {
     std::string about; ///< a line for the help
     bool figure = false;
     std::vector<PaperModel> models;
-    std::string gpu; ///< a built-in description, or empty
-    int level = 0;   ///< of its comparison; 0: it has none
+    std::vector<std::string> gpus; ///< built-in descriptions
+    int level = 0;                 ///< of its comparison; 0: it has none
     std::function<std::variant<PaperTable, PaperFigure>(PaperInput const&, ThreadPool const&,
                                                         PaperProgress const&)>
         run;

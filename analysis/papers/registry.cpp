@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/papers/loop09/items.h"
+#include "analysis/papers/loop10/items.h"
 #include "analysis/papers/paper.h"
 
 namespace tessemu {
@@ -8,7 +9,8 @@ std::vector<PaperItem> const& paper_items()
 {
     static std::vector<PaperItem> const all = [] {
         std::vector<PaperItem> items;
-        for (PaperItem& i : loop09_items()) items.push_back(std::move(i));
+        for (auto const& paper : {loop09_items(), loop10_items()})
+            items.insert(items.end(), paper.begin(), paper.end());
         return items;
     }();
     return all;

@@ -8,6 +8,7 @@
 #include "pipeline/commands/surface_settings.h"
 #include "pipeline/mesh/poles.h"
 #include "pipeline/mesh/refinement.h"
+#include "pipeline/mesh/valence_type.h"
 #include "shaders_cpp/pole_normals.h"
 #include "shaders_cpp/skinning.h"
 
@@ -18,6 +19,8 @@ struct PatchCount {
     PatchKind kind;
     std::size_t patches = 0, types = 0;
     int min_inputs = 0, max_inputs = 0;
+    /// Of those that have one, ascending; a scheme whose tables are by type tells.
+    std::vector<std::pair<ValenceType, std::size_t>> valence_types = {};
 };
 
 /// Patches that a scheme draws in another way than its paper's, for they are beyond a limit.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <unordered_map>
 
@@ -95,14 +96,19 @@ std::vector<PatchCount> StencilForm::patch_counts() const
             if (g.kind == k) add(g.patches.size(), g.inputs, g.inputs);
         for (WideGroup const& g : tables_.wide)
             if (g.kind == k) add(g.patches.size(), g.min_inputs, g.max_inputs);
-        c.types = std::size_t(std::count_if(types_.begin(), types_.end(),
-                                            [&](Type const& t) { return t.kind == k; }));
-        if (c.patches) out.push_back(c);
+        std::map<ValenceType, std::size_t> valences;
+        for (Type const& t : types_) {
+            if (t.kind != k) continue;
+            ++c.types;
+            if (t.valences) valences[*t.valences] += t.patches;
+        }
+        c.valence_types.assign(valences.begin(), valences.end());
+        if (c.patches) out.push_back(std::move(c));
     }
     return out;
 }
 
-void StencilForm::make_tables()
+void StencilForm::make_tables(std::vector<TypeAhead> const& ahead)
 {
     struct Patch {
         std::uint32_t face, type;
@@ -111,13 +117,25 @@ void StencilForm::make_tables()
     std::vector<char> const hidden = hidden_faces(mesh(), warnings_);
     poles_ = find_poles(topology);
     std::unordered_map<std::string, std::uint32_t> type_ids;
+    std::unordered_map<std::string, Table> ready;
     std::vector<Patch> patches;
     Neighbourhood n;
+    for (TypeAhead const& a : ahead) {
+        ControlMesh const cage = one_ring_cage(a.type);
+        find_neighbourhood(Topology(cage), 0, n);
+        ready.emplace(n.key, add_table(a.kind, n));
+    }
     for (std::uint32_t f = 0; f < mesh().mesh().faces(); ++f) {
         if (hidden[f]) continue;
         find_neighbourhood(topology, f, n);
         auto const [it, fresh] = type_ids.try_emplace(n.key, std::uint32_t(types_.size()));
-        if (fresh) add_type(f, n);
+        if (fresh) {
+            std::size_t const kind = kind_of(f);
+            auto const made = ready.find(n.key);
+            types_.push_back(
+                {made != ready.end() ? made->second : add_table(kind, n), kind, valence_type(n)});
+        }
+        ++types_[it->second].patches;
         patches.push_back({f, it->second});
     }
     std::stable_sort(patches.begin(), patches.end(), [&](Patch const& a, Patch const& b) {
@@ -152,14 +170,13 @@ void StencilForm::make_tables()
                 std::to_string(most) + "): a dispatch sums their control points before the draw");
 }
 
-void StencilForm::add_type(std::uint32_t face, Neighbourhood const& n)
+StencilForm::Table StencilForm::add_table(std::size_t kind, Neighbourhood const& n)
 {
-    types_.push_back({kind_of(face), {}, 0, tables_.weights.size(), tables_.zero_masks.size()});
-    Type& t = types_.back();
+    Table t{{}, 0, tables_.weights.size(), tables_.zero_masks.size()};
     PatchStencils& s = t.stencils;
     s.inputs = int(n.inputs.size());
-    if (t.wide()) return;
-    s = stencils(t.kind, n);
+    if (s.inputs > kMaxControlPoints) return t; // wide: its rows are made patch by patch
+    s = stencils(kind, n);
     t.rows = s.rows.size();
     for (int i = 0; i < s.inputs; ++i)
         for (auto const& row : s.rows) tables_.weights.push_back(float(row[std::size_t(i)]));
@@ -171,6 +188,7 @@ void StencilForm::add_type(std::uint32_t face, Neighbourhood const& n)
     }
     for (double c : s.constants) tables_.weights.push_back(float(c));
     s.rows.clear();
+    return t;
 }
 
 namespace {

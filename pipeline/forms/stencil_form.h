@@ -84,11 +84,18 @@ protected:
           kinds_(std::move(kinds))
     {
     }
+    /// Patches whose type's table is made before the mesh is looked at.
+    struct TypeAhead {
+        std::size_t kind;
+        ValenceType type;
+    };
     /// Makes the tables: the last line of the scheme's constructor. Throws LimitError for wide
     /// patches whose rows have more than 2^28 terms, as around several vertices of 2,000 edges.
+    ///
+    /// \param ahead  of LOOP10's types; tables have other places then and the same rows
     /// \cost  a table for each connectivity type, linear in the faces, and in the terms of wide
     ///        patches' rows: some 28 times the square of a pole's valence
-    void make_tables();
+    void make_tables(std::vector<TypeAhead> const& ahead = {});
 
     // What a scheme says. Kinds are numbers in the constructor's list.
     virtual std::size_t kind_of(std::uint32_t face) const = 0;
@@ -98,15 +105,20 @@ protected:
     virtual DomainShader domain_shader(std::size_t kind, SurfaceSettings const& settings) const = 0;
 
 private:
-    struct Type {
-        std::size_t kind;
+    /// In the buffers of all types.
+    struct Table {
         PatchStencils stencils; ///< without their rows
         std::size_t rows, first_weight, first_mask;
+    };
+    struct Type : Table {
+        std::size_t kind;
+        std::optional<ValenceType> valences;
+        std::size_t patches = 0;
 
         int inputs() const { return stencils.inputs; }
         bool wide() const { return inputs() > kMaxControlPoints; }
     };
-    void add_type(std::uint32_t face, Neighbourhood const& n);
+    Table add_table(std::size_t kind, Neighbourhood const& n);
     void add_patch(Type const& t, Neighbourhood const& n, std::uint32_t face);
     void add_wide_patch(Type const& t, Neighbourhood const& n, std::uint32_t face);
     void add_wide_draws(CommandList& list, SurfaceSettings const& settings, Tables const& tables,

@@ -20,8 +20,9 @@ template <class View> struct BumpedView {
 
     std::vector<ResourceInfo> resources() const
     {
-        if (!height.is_image()) return {};
-        return {height.info()};
+        std::vector<ResourceInfo> out = resources_of(view);
+        if (height.is_image()) out.push_back(height.info());
+        return out;
     }
 
     template <class T>

@@ -81,6 +81,17 @@ struct NormalPixelShader {
     }
 };
 
+/// How bright a patch's colour is, 0.45 in the dark to 1.
+template <class T>
+T patch_light(PixelInput<T> const& pixel, SurfaceAttributes<T> const& in,
+              std::array<float, 3> const& light)
+{
+    float3<T> const n = facing_normal(pixel, in);
+    float3<T> const light_v{T(light[0]), T(light[1]), T(light[2])};
+    T const diffuse = max(T(dot(n, light_v)), T(0));
+    return T(0.45) + T(0.55) * diffuse;
+}
+
 /// Patches told apart: a colour per patch kind, varied a little from patch to patch, lit.
 struct PatchPixelShader {
     template <class T> using Input = SurfaceAttributes<T>;
@@ -91,14 +102,32 @@ struct PatchPixelShader {
     float4<T> operator()(PixelInput<T> const& pixel, SurfaceAttributes<T> const& in) const
     {
         using Int = int_of<T>;
-        float3<T> const n = facing_normal(pixel, in);
-        float3<T> const light_v{T(light[0]), T(light[1]), T(light[2])};
-        T const diffuse = max(T(dot(n, light_v)), T(0));
+        T const bright = patch_light(pixel, in, light);
         Int const hash = (pixel.primitive_id * Int(0x9e3779b)) >> Int(20);
         T const variation = T(0.78) + T(0.32 / 255) * T(hash & Int(255));
-        T const shade = variation * T(T(0.45) + T(0.55) * diffuse);
+        T const shade = variation * bright;
         return {saturate(T(T(color[0]) * shade)), saturate(T(T(color[1]) * shade)),
                 saturate(T(T(color[2]) * shade)), T(1)};
+    }
+};
+
+/// A colour for each patch, lit.
+struct PatchColorPixelShader {
+    static constexpr int kSlot = 0;
+    template <class T> using Input = SurfaceAttributes<T>;
+    Buffer<float> colors; ///< [patch][3]
+    std::array<float, 3> light{0.48f, 0.6f, 0.64f};
+
+    std::vector<ResourceInfo> resources() const { return {colors.info()}; }
+    template <class T>
+    float4<T> operator()(PixelInput<T> const& pixel, SurfaceAttributes<T> const& in) const
+    {
+        using Int = int_of<T>;
+        T const bright = patch_light(pixel, in, light);
+        Int const first = pixel.primitive_id * Int(3);
+        T const r = load<T>(colors, first), g = load<T>(colors, first + Int(1)),
+                b = load<T>(colors, first + Int(2));
+        return {T(r * bright), T(g * bright), T(b * bright), T(1)};
     }
 };
 

@@ -39,11 +39,12 @@ template <class Inside> constexpr Cost evaluation_cost()
     return c;
 }
 
-// LOOP10: 162 for the bicubic; docs/math/loop09.md, 8: 198 for Gregory with all scalar work
-// (LOOP10's 174 leaves out the 24 multiplications that apply the blend weights); 258 for the
-// triangle.
+// LOOP10: 162 for the bicubic; docs/math/loop09.md, 8: 198 for Gregory with all scalar work, 258 for
+// the triangle. LOOP10's 174 for Gregory are the 162, 8 weights and 4 divisions, without the 24
+// multiplications that apply the weights to points.
 static_assert(flops_loop10(evaluation_cost<RegularQuadInside>().flops) == 162);
 static_assert(flops_loop10(evaluation_cost<GregoryQuadInside>().flops) == 198);
+static_assert(flops_loop10(evaluation_cost<GregoryQuadInside>().flops) == 162 + (8 + 4) + 8 * 3);
 static_assert(flops_loop10(evaluation_cost<GregoryTriangleInside>().flops) == 258);
 static_assert(flops_loop10(evaluation_cost<AccQuadInside>().flops) == 272);
 static_assert(evaluation_cost<GregoryQuadInside>().flops.div == 4);

@@ -23,28 +23,42 @@ std::vector<PaperItem> loop09_items()
                      "times on a Direct3D 11 emulator",
                      false,
                      {{"golem"}},
-                     "loop09-emulator",
+                     {"loop09-emulator"},
                      0,
                      [](PaperInput const& in, auto& threads, auto& progress) {
-                         return reproduce_loop09_table1(in.meshes.at(0), in.gpu.value(), in.machine,
+                         return reproduce_loop09_table1(in.meshes.at(0), in.gpus.at(0), in.machine,
                                                         threads, progress)
                              .table;
                      }});
-    items.push_back({"loop09-table2", "frames a second by instanced tessellation", false, papers,
-                     "gtx260", 0, [](PaperInput const& in, auto& threads, auto& progress) {
-                         return reproduce_loop09_table2(in.meshes, in.gpu.value(), in.machine,
+    items.push_back({"loop09-table2",
+                     "frames a second by instanced tessellation",
+                     false,
+                     papers,
+                     {"gtx260"},
+                     0,
+                     [](PaperInput const& in, auto& threads, auto& progress) {
+                         return reproduce_loop09_table2(in.meshes, in.gpus.at(0), in.machine,
                                                         threads, progress)
                              .table;
                      }});
-    items.push_back({"loop09-table3", "error against the Catmull-Clark surface", false, papers, "",
+    items.push_back({"loop09-table3",
+                     "error against the Catmull-Clark surface",
+                     false,
+                     papers,
+                     {},
                      3, // nearest to the paper, see the table's remarks
                      [](PaperInput const& in, auto& threads, auto& progress) {
                          return reproduce_loop09_table3(in.meshes, in.level, in.machine, threads,
                                                         progress);
                      }});
     auto const figure = [&](int number, char const* about, std::vector<PaperModel> models) {
-        items.push_back({"loop09-figure" + std::to_string(number), about, true, std::move(models),
-                         "", 0, [number](PaperInput const& in, auto& threads, auto& progress) {
+        items.push_back({"loop09-figure" + std::to_string(number),
+                         about,
+                         true,
+                         std::move(models),
+                         {},
+                         0,
+                         [number](PaperInput const& in, auto& threads, auto& progress) {
                              FrameSettings s = in.picture;
                              s.machine = in.machine;
                              return reproduce_loop09_figure(number, in.meshes, s, threads,

@@ -23,7 +23,11 @@ public:
         parameters_.lambda_scale = parameters.number("lambda");
         parameters_.r_scale = parameters.number("r");
         parameters_.smooth_corners = mesh().base().smooth_corners();
-        make_tables();
+        std::vector<TypeAhead> ahead;
+        if (parameters.word("matrices") == "ahead")
+            for (ValenceType const& t : isolated_valence_types())
+                ahead.push_back({t.inputs() == 16 ? kRegularQuad : kGregoryQuad, t});
+        make_tables(ahead);
     }
 
 private:
@@ -65,6 +69,13 @@ public:
             "Gregory quads and triangles, regular quads as bicubics, stencils by connectivity type",
             {},
             gregory_parameters()};
+        info.parameters.push_back({"matrices",
+                                   "when the changes of basis of isolated extraordinary vertices "
+                                   "are made: as patches ask for them, or all 10 before",
+                                   0,
+                                   {},
+                                   {},
+                                   {"demand", "ahead"}});
         info.takes.edges = StencilForm::kMostEdges;
         return info;
     }
