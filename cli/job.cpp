@@ -230,7 +230,7 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     if (o.vertex_cache) f.vertex_cache = *o.vertex_cache;
     f.direct3d10 = o.direct3d10;
     f.displacement = make_displacement(o, job);
-    job.poses = make_poses(o.animate, job.surface.mesh->mesh());
+    job.poses = make_poses(o.animate, job.surface.mesh->base());
     f.pose = job.poses[0].pose;
 
     ReportHeader& h = job.header;

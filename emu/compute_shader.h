@@ -69,6 +69,53 @@ private:
     std::string name_;
 };
 
+/// A buffer of vectors of three floats that shaders read and write, each by one fetch of 12 bytes
+/// (D3D11: a raw buffer by Load3 and Store3, which the input assembler may read as well).
+/// Out-of-range loads give 0, out-of-range stores do nothing (R144).
+class RWVectorBuffer {
+public:
+    RWVectorBuffer() = default;
+    /// \param stride  floats from vector to vector, at least 3. Vectors beyond 2^31 - 1 floats are
+    ///                out of range.
+    RWVectorBuffer(std::span<float> floats, int stride, int slot, std::string name)
+        : floats_(floats),
+          stride_(stride),
+          slot_(slot),
+          name_(std::move(name))
+    {
+        assert(stride >= 3 && slot >= 0 && slot < kBufferSlots);
+    }
+    std::span<float> floats() const { return floats_; }
+    int stride() const { return stride_; }
+    int slot() const { return slot_; }
+    std::size_t vectors() const { return floats_.size() / std::size_t(stride_); }
+    ResourceInfo info() const
+    {
+        return {name_, ResourceKind::Buffer, slot_, vectors(), 3 * sizeof(float)};
+    }
+
+private:
+    std::span<float> floats_;
+    int stride_ = 3, slot_ = 0;
+    std::string name_;
+};
+
+/// buffer[i] per lane, as memory is now.
+template <class T, int N> float3<T> load3(RWVectorBuffer const& b, IntLanes<N> i)
+{
+    detail::count_fetch<T>(b.slot(), i, b.vectors());
+    // Out of range, and so for each of its three floats.
+    Mask<N> const inside = (i >= IntLanes<N>(0)) & (i < IntLanes<N>(std::int32_t(b.vectors())));
+    IntLanes<N> const first = select(inside, i * IntLanes<N>(b.stride()), IntLanes<N>(-3));
+    auto const at = [&](int k) -> T {
+        IntLanes<N> const bits =
+            gather_or_zero<N>(reinterpret_cast<std::int32_t const*>(b.floats().data()),
+                              b.vectors() * std::size_t(b.stride()), first + IntLanes<N>(k));
+        return T(Lanes<N>(typename Lanes<N>::Raw(bits.raw)));
+    };
+    return {at(0), at(1), at(2)};
+}
+
 namespace detail {
 /// work(lane, element) for each active lane whose element exists; counts the writes.
 template <class T, class E, int N, class Work>
@@ -102,6 +149,22 @@ requires std::integral<E>
 void store(RWBuffer<E> const& b, IntLanes<N> i, IntLanes<N> value)
 {
     detail::for_each_written<T>(b, i, [&](int l, E& e) { e = E(value.raw[l]); });
+}
+/// buffer[i] = value in the active lanes, the highest lane last.
+template <class T, int N>
+void store3(RWVectorBuffer const& b, IntLanes<N> i, float3<T> const& value)
+{
+    if constexpr (ScalarTraits<T>::kCounted) {
+        execution.features |= kFetches;
+        if (FetchSlot* const s = detail::bound_slot(b.slot())) s->written += execution.active_lanes;
+    }
+    Lanes<N> const v[3] = {lanes_value(value.x), lanes_value(value.y), lanes_value(value.z)};
+    for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
+        int const l = std::countr_zero(bits);
+        if (std::size_t(i.raw[l]) >= b.vectors()) continue;
+        float* const out = b.floats().data() + std::size_t(i.raw[l]) * std::size_t(b.stride());
+        for (int k = 0; k < 3; ++k) out[k] = v[k].raw[l];
+    }
 }
 /// HLSL's Interlocked operations; I and U take their operands for signed and unsigned.
 enum class AtomicOp : std::uint8_t { Add, And, Or, Xor, IMax, IMin, UMax, UMin, Exchange };

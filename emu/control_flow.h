@@ -137,6 +137,11 @@ template <class T, int N> int longest(IntLanes<N> n)
     return turns;
 }
 
+template <class T> constexpr int longest(std::int32_t n)
+{
+    return n;
+}
+
 /// unrolled<n>(body): body(0), ..., body(n-1) with the index a constant, as a shader compiler
 /// unrolls; each turn is a place in the source of its own.
 template <int kTurns, class Body> constexpr void unrolled(Body&& body)

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "emu/control_flow.h"
+#include "emu/lane_memory.h"
 
 #include <array>
 #include <atomic>
@@ -51,6 +52,22 @@ public:
         mark_word(first / 64, std::uint64_t(bits) << shift);
         if (std::uint64_t const over = shift > 32 ? std::uint64_t(bits) >> (64 - shift) : 0)
             mark_word(first / 64 + 1, over);
+    }
+    /// The elements below `size` of the active lanes; those of a word together.
+    template <int N> void mark_each(IntLanes<N> index, std::size_t size)
+    {
+        std::size_t word = 0;
+        std::uint64_t marks = 0;
+        for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
+            auto const i = std::size_t(index.raw[std::countr_zero(bits)]);
+            if (i >= size) continue;
+            if (i / 64 != word) {
+                if (marks) mark_word(word, marks);
+                word = i / 64, marks = 0;
+            }
+            marks |= std::uint64_t(1) << (i % 64);
+        }
+        if (marks) mark_word(word, marks);
     }
     std::uint64_t count() const
     {
@@ -121,10 +138,7 @@ void count_fetch(int slot, IntLanes<N> index, std::size_t size, bool run = false
         s->count += execution.active_lanes;
         if (!s->touched) return;
         if (run) return s->touched->mark_run(std::size_t(index.raw[0]), execution.active_bits);
-        for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
-            auto const i = std::size_t(index.raw[std::countr_zero(bits)]);
-            if (i < size) s->touched->mark(i);
-        }
+        s->touched->mark_each(index, size);
     }
 }
 } // namespace detail
@@ -188,6 +202,10 @@ template <class T, class E, int N> auto load(Buffer<E> const& buffer, IntLanes<N
     std::conditional_t<std::floating_point<E>, Lanes<N>, IntLanes<N>> r(0);
     if (run) {
         __builtin_memcpy(&r.raw, e.data() + i.raw[0], sizeof r.raw);
+    } else if constexpr (sizeof(E) == 4) {
+        IntLanes<N> const bits =
+            gather_or_zero<N>(reinterpret_cast<std::int32_t const*>(e.data()), e.size(), i);
+        __builtin_memcpy(&r.raw, &bits.raw, sizeof r.raw);
     } else {
         for (int k = 0; k < N; ++k)
             if (std::size_t(i.raw[k]) < e.size()) r.raw[k] = e[std::size_t(i.raw[k])];

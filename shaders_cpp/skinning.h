@@ -76,12 +76,13 @@ struct SkinningVertexShader {
     }
 };
 
-/// One thread a vertex, for vertex shaders that read their neighbours from a texture.
+/// One thread a vertex, for shaders that read their neighbours from memory.
 struct SkinningComputeShader {
     static constexpr std::array<int, 3> kThreads{64, 1, 1};
     SkinBuffers skin;
     Buffer<float> rest;    ///< [vertex][3]
-    RWBuffer<float> moved; ///< [vertex][4], texels of RingTextures::positions
+    RWBuffer<float> moved; ///< [vertex][stride]
+    int stride = 4;        ///< of texels, such as RingTextures::positions
 
     std::vector<ResourceInfo> resources() const
     {
@@ -96,10 +97,10 @@ struct SkinningComputeShader {
             float3<T> const p(load<T>(rest, three), load<T>(rest, three + Int(1)),
                               load<T>(rest, three + Int(2)));
             float3<T> const posed = skin.posed<T>(vertex, p);
-            Int const four = vertex << Int(2);
-            store(moved, four, posed.x);
-            store(moved, four + Int(1), posed.y);
-            store(moved, four + Int(2), posed.z);
+            Int const out = vertex * Int(stride);
+            store(moved, out, posed.x);
+            store(moved, out + Int(1), posed.y);
+            store(moved, out + Int(2), posed.z);
         });
     }
 };

@@ -2,6 +2,7 @@
 #include "pipeline/commands/patch_mesh.h"
 
 #include "pipeline/commands/displacement.h"
+#include "pipeline/commands/subdivision.h"
 
 namespace tessemu {
 
@@ -15,6 +16,10 @@ void VertexSource::bind(DrawCall& call) const
 {
     call.set_vertices(floats, read);
     call.vertex_buffers[0].stride = std::uint32_t(stride) * sizeof(float);
+    if (normals.empty()) return;
+    constexpr std::uint32_t kStride = 3 * PoleNormalShader::kVectors * sizeof(float);
+    call.vertex_buffers.push_back({std::as_bytes(normals), kStride, 0});
+    call.layout.push_back({Format::R32G32B32_FLOAT, 3, 1, 0, false, 1});
 }
 
 VertexSource positions_of(ControlMesh const& mesh)
@@ -28,23 +33,38 @@ SkinBuffers skin_of(Pose const& pose)
     return {{pose.skin->vertices, 0, "skin"}, {pose.bones, 1, "bones"}};
 }
 
-VertexSource add_skinning(CommandList& list, ControlMesh const& mesh,
-                          SurfaceSettings const& settings, std::size_t texels)
+VertexSource add_vertices(CommandList& list, RefinedMesh const& refined,
+                          SurfaceSettings const& settings, VertexRoom const& room)
 {
-    std::size_t const vertices = mesh.positions.size();
-    auto const moved = std::make_shared<std::vector<float>>(std::max(vertices, texels) * 4);
-    list.memory.push_back(moved);
-    SkinningComputeShader cs;
-    cs.skin = skin_of(*settings.pose);
-    cs.rest = {positions_of(mesh).floats, 2, "rest_positions"};
-    cs.moved = {std::span(*moved).first(vertices * 4), 3, "moved_positions"};
-    list.commands.emplace_back(
-        Dispatch{"skinning", bind_compute_shader(cs, settings.machine), groups_for(vertices, 64)});
-    return {*moved, 3, 4};
+    ControlMesh const& base = refined.base();
+    if (!settings.pose && refined.steps() == 0) return positions_of(base);
+    auto const stride = std::size_t(room.stride);
+    std::size_t const vertices = base.positions.size(),
+                      first = refined.steps() ? refined.tables().back().first_face_point() : 0,
+                      drawn = refined.mesh().positions.size();
+    auto const points =
+        std::make_shared<std::vector<float>>((first + std::max(drawn, room.texels)) * stride);
+    list.memory.push_back(points);
+    if (settings.pose) {
+        SkinningComputeShader cs;
+        cs.skin = skin_of(*settings.pose);
+        cs.rest = {positions_of(base).floats, 2, "rest_positions"};
+        cs.moved = {std::span(*points).first(vertices * stride), 3, "moved_positions"};
+        cs.stride = room.stride;
+        list.commands.emplace_back(Dispatch{"skinning", bind_compute_shader(cs, settings.machine),
+                                            groups_for(vertices, 64)});
+    } else {
+        for (std::size_t v = 0; v < vertices; ++v)
+            for (int k = 0; k < 3; ++k)
+                (*points)[v * stride + std::size_t(k)] = base.positions[v][k];
+    }
+    add_subdivision(list, refined.tables(), *points, room.stride, settings.machine);
+    return {std::span(*points).subspan(first * stride), 3, room.stride};
 }
 
 std::span<float const> add_pole_normals(CommandList& list, Poles const& poles,
-                                        VertexSource const& positions, Machine const& machine)
+                                        VertexSource const& positions, Machine const& machine,
+                                        char const* name)
 {
     if (poles.empty()) return {};
     auto const normals =
@@ -57,7 +77,7 @@ std::span<float const> add_pole_normals(CommandList& list, Poles const& poles,
     cs.normals = {*normals, 3, "pole_normals"};
     cs.stride = positions.stride;
     list.commands.emplace_back(
-        Dispatch{"pole normals", bind_compute_shader(cs, machine), groups_for(poles.size(), 64)});
+        Dispatch{name, bind_compute_shader(cs, machine), groups_for(poles.size(), 64)});
     return *normals;
 }
 

@@ -53,6 +53,8 @@ struct VertexSource {
     std::span<float const> floats;
     int read = 3;   ///< floats of a vertex that are read, from its first
     int stride = 3; ///< floats from vertex to vertex
+    /// Unit normals, read behind them; empty: none.
+    std::span<float const> normals = {};
 
     void bind(DrawCall& call) const;
 };
@@ -62,18 +64,26 @@ VertexSource positions_of(ControlMesh const& mesh);
 /// A pose as shaders read it: slots 0 and 1.
 SkinBuffers skin_of(Pose const& pose);
 
-/// Appends a dispatch that moves the mesh's vertices into the settings' pose, for shaders that read
-/// their neighbours from memory.
+/// Positions of vertices in memory that no draw need share.
+struct VertexRoom {
+    int stride = 3;         ///< floats from vertex to vertex
+    std::size_t texels = 0; ///< at least so many vertices' room
+};
+/// Where dispatches and draws find the drawn mesh's positions. Only the file's vertices are moved
+/// into the settings' pose, by a dispatch; the steps of subdivision, dispatches too, make all others
+/// of them.
 ///
-/// \param texels  at least so many vertices' room
-VertexSource add_skinning(CommandList& list, ControlMesh const& mesh,
-                          SurfaceSettings const& settings, std::size_t texels = 0);
+/// \returns  the control mesh's own memory, without a command, where there is neither
+VertexSource add_vertices(CommandList& list, RefinedMesh const& mesh,
+                          SurfaceSettings const& settings, VertexRoom const& room = {});
 
-/// Appends the dispatch of the poles' normals, where there are poles; PoleNormals reads them.
+/// Appends a dispatch of the poles' normals, where there are poles; PoleNormals reads them.
 ///
+/// \param name       of the dispatch
 /// \param positions  of the mesh's vertices in the pose that is drawn
 std::span<float const> add_pole_normals(CommandList& list, Poles const& poles,
-                                        VertexSource const& positions, Machine const& machine);
+                                        VertexSource const& positions, Machine const& machine,
+                                        char const* name = "pole normals");
 
 /// What a draw of patches consists of.
 struct PatchDraw {

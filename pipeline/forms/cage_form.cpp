@@ -32,9 +32,9 @@ std::vector<glm::vec3> vertex_normals(ControlMesh const& mesh)
 
 namespace {
 
-VertexShader vertex_shader(SurfaceSettings const& s)
+VertexShader vertex_shader(SurfaceSettings const& s, bool at_rest)
 {
-    if (!s.pose) return bind_vertex_shader(NormalVertexShader{}, s.machine);
+    if (!s.pose || !at_rest) return bind_vertex_shader(NormalVertexShader{}, s.machine);
     return bind_vertex_shader(SkinnedNormalVertexShader{skin_of(*s.pose)}, s.machine);
 }
 
@@ -46,11 +46,15 @@ CageForm::CageForm(std::shared_ptr<RefinedMesh const> refined)
               {{"quad", PatchClass::IrregularQuad}, 4, {}, {}}}
 {
     ControlMesh const& control = mesh().mesh();
-    std::vector<glm::vec3> const normals = vertex_normals(control);
-    for (std::size_t v = 0; v < normals.size(); ++v)
-        for (glm::vec3 const& part : {control.positions[v], normals[v]})
-            for (int k = 0; k < 3; ++k) // + 0: no -0, whose sign a sum may or may not keep
-                vertices_.push_back(part[k] + 0.0f);
+    if (mesh().steps() > 0) {
+        normals_ = vertices_as_poles(control);
+    } else {
+        std::vector<glm::vec3> const normals = vertex_normals(control);
+        for (std::size_t v = 0; v < normals.size(); ++v)
+            for (glm::vec3 const& part : {control.positions[v], normals[v]})
+                for (int k = 0; k < 3; ++k) // + 0: no -0, whose sign a sum may or may not keep
+                    vertices_.push_back(part[k] + 0.0f);
+    }
     std::vector<char> const hidden = hidden_faces(mesh(), warnings_);
     for (std::uint32_t f = 0; f < control.faces(); ++f) {
         if (hidden[f]) continue;
@@ -61,9 +65,18 @@ CageForm::CageForm(std::shared_ptr<RefinedMesh const> refined)
     }
 }
 
+VertexSource CageForm::vertices(CommandList& list, SurfaceSettings const& s) const
+{
+    if (mesh().steps() == 0) return {vertices_, 6, 6};
+    VertexSource out = add_vertices(list, mesh(), s);
+    out.normals = add_pole_normals(list, normals_, out, s.machine, "vertex normals");
+    return out;
+}
+
 CommandList CageForm::commands(SurfaceSettings const& s) const
 {
     CommandList list;
+    VertexSource const source = vertices(list, s);
     for (Group const& g : groups_) {
         if (g.patches.empty()) continue;
         HullShader const hull =
@@ -72,14 +85,8 @@ CommandList CageForm::commands(SurfaceSettings const& s) const
                          : bind_hull_shader(
                                CageHullShader<TessellatorDomain::Quad>{s.factor_rule()}, s.machine);
         add_patch_draw(list, mesh(),
-                       {g.kind,
-                        {vertices_, 6, 6},
-                        g.sides,
-                        g.indices,
-                        g.patches,
-                        vertex_shader(s),
-                        hull,
-                        domain_shader(g.sides, s)},
+                       {g.kind, source, g.sides, g.indices, g.patches,
+                        vertex_shader(s, mesh().steps() == 0), hull, domain_shader(g.sides, s)},
                        s);
     }
     return list;

@@ -35,7 +35,10 @@ private:
         std::vector<PatchPlace> patches;
         std::vector<std::uint32_t> indices;
     };
-    std::vector<float> vertices_; // position and normal, six floats each
+    VertexSource vertices(CommandList& list, SurfaceSettings const& settings) const;
+
+    std::vector<float> vertices_; // of the file's mesh: position and normal, six floats each
+    Poles normals_;               // of a mesh that steps make: a dispatch makes its normals
     Group groups_[2];             // triangles, quads
     std::vector<std::string> warnings_;
 };

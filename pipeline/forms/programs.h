@@ -4,8 +4,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "shaders_cpp/pole_normals.h"
 #include "shaders_cpp/stencil_form/stencil_compute_shader.h"
 #include "shaders_cpp/stencil_form/stencil_hull_shader.h"
+#include "shaders_cpp/subdivision/catmull_clark_kernels.h"
 #include "shaders_cpp/two_stage_form/by_corners.h"
 
 namespace tessemu {
@@ -19,7 +21,11 @@ namespace tessemu {
     instantiate class HullProgramOn<StencilTriHullShader<SummedRows<3>>, T>;                       \
     instantiate class HullProgramOn<StencilTriHullShader<GatheredRows<3>>, T>;                     \
     instantiate class ComputeProgramOn<StencilComputeShader, T>;                                   \
-    instantiate class ComputeProgramOn<PoleNormalShader, T>;
+    instantiate class ComputeProgramOn<PoleNormalShader, T>;                                       \
+    instantiate class ComputeProgramOn<FacePointShader, T>;                                        \
+    instantiate class ComputeProgramOn<EdgePointShader, T>;                                        \
+    instantiate class ComputeProgramOn<VertexPointShader, T>;                                      \
+    instantiate class ComputeProgramOn<BlendedPointShader, T>;
 
 TESSEMU_FORM_PROGRAMS(extern template, FastScalar)
 TESSEMU_FORM_PROGRAMS(extern template, CheckScalar)

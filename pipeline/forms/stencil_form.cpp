@@ -14,9 +14,10 @@ namespace tessemu {
 
 namespace {
 
-VertexShader vertex_shader(SurfaceSettings const& settings)
+VertexShader vertex_shader(SurfaceSettings const& settings, bool at_rest)
 {
-    if (!settings.pose) return bind_vertex_shader(PassThroughVertexShader{}, settings.machine);
+    if (!settings.pose || !at_rest)
+        return bind_vertex_shader(PassThroughVertexShader{}, settings.machine);
     return bind_vertex_shader(SkinningVertexShader{skin_of(*settings.pose)}, settings.machine);
 }
 
@@ -25,18 +26,22 @@ VertexShader vertex_shader(SurfaceSettings const& settings)
 CommandList StencilForm::commands(SurfaceSettings const& settings, Tables const& tables) const
 {
     CommandList list;
-    VertexSource positions = positions_of(mesh().mesh()); // of dispatches
-    if (settings.pose && (!poles_.empty() || !tables.wide.empty()))
-        positions = add_skinning(list, mesh().mesh(), settings);
+    // The vertex shader poses a mesh that is drawn as it is; what reads it from memory needs it
+    // posed before.
+    bool const as_it_is = mesh().steps() == 0,
+               reads_memory = !poles_.empty() || !tables.wide.empty();
+    VertexSource const vertices =
+        as_it_is ? positions_of(mesh().base()) : add_vertices(list, mesh(), settings);
+    VertexSource const positions =
+        as_it_is && reads_memory ? add_vertices(list, mesh(), settings) : vertices;
     std::span<float const> const poles =
         add_pole_normals(list, poles_, positions, settings.machine);
-    VertexShader const vertex = vertex_shader(settings);
+    VertexShader const vertex = vertex_shader(settings, as_it_is);
     for (Group const& g : tables.groups) {
         StencilBuffers const buffers{tables.weights, tables.zero_masks, g.words, g.order, poles};
         add_patch_draw(list, mesh(),
-                       {kinds_[g.kind], positions_of(mesh().mesh()), g.inputs, g.indices, g.patches,
-                        vertex, hull_shader(g.kind, buffers, settings),
-                        domain_shader(g.kind, settings)},
+                       {kinds_[g.kind], vertices, g.inputs, g.indices, g.patches, vertex,
+                        hull_shader(g.kind, buffers, settings), domain_shader(g.kind, settings)},
                        settings);
     }
     add_wide_draws(list, settings, tables, positions, poles);

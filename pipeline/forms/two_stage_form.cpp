@@ -94,13 +94,12 @@ TwoStageForm::WideRing TwoStageForm::wide_ring(int faces, bool boundary)
 CommandList TwoStageForm::commands(SurfaceSettings const& settings) const
 {
     CommandList list;
-    // At rest the texture is the mesh's; in a pose a dispatch before the draws fills another.
-    VertexSource vertices = positions_of(mesh().mesh());
-    std::span<float const> positions = rings_.positions;
-    if (settings.pose) {
-        vertices = add_skinning(list, mesh().mesh(), settings, rings_.positions.size() / 4);
-        positions = vertices.floats;
-    }
+    // The texture of a mesh at rest is made once; else dispatches before the draws fill another.
+    bool const as_it_is = mesh().steps() == 0 && !settings.pose;
+    VertexSource const vertices =
+        add_vertices(list, mesh(), settings, {4, rings_.positions.size() / 4});
+    std::span<float const> const positions =
+        as_it_is ? std::span<float const>(rings_.positions) : vertices.floats;
     std::span<float const> const poles = add_pole_normals(list, poles_, vertices, settings.machine);
     RingTextures textures;
     textures.rings = {rings_.rings, 0, "ring_heads"};

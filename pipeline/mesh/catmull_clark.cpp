@@ -26,14 +26,16 @@ void refine_coordinates(Topology const& topology, ControlMesh& out)
 
 } // namespace
 
-ControlMesh catmull_clark_step(Topology const& topology)
+RefinedStep catmull_clark_step(Topology const& topology, std::uint32_t first)
 {
     Sharpness const sharpness(topology);
     std::vector<glm::dvec3> const x(topology.mesh().positions.begin(),
                                     topology.mesh().positions.end());
-    ControlMesh out = catmull_clark_mesh(
-        topology, sharpness, refined_points<CatmullClark, glm::dvec3>(topology, sharpness, x));
-    refine_coordinates(topology, out);
+    RefinedStep out;
+    out.mesh = catmull_clark_mesh(topology, sharpness,
+                                  refined_points<CatmullClark, glm::dvec3>(topology, sharpness, x));
+    refine_coordinates(topology, out.mesh);
+    out.tables = catmull_clark_tables(topology, sharpness, first, first > 0);
     return out;
 }
 
@@ -47,22 +49,15 @@ ControlMesh catmull_clark_mesh(Topology const& topology, Sharpness const& sharpn
     out.crease_method = mesh.crease_method;
     out.smooth_triangles = mesh.smooth_triangles;
     out.positions.assign(points.begin(), points.end());
-    auto edges = std::uint32_t(mesh.positions.size());
-    std::vector<std::uint32_t> edge_point(mesh.face_vertices.size());
+    EdgeNumbers const edges(topology);
+    auto const edge_point = [&, F = std::uint32_t(mesh.faces())](HalfEdge h) {
+        return F + edges[h];
+    };
+    auto const vertex_point =
+        [first = std::uint32_t(mesh.faces() + edges.size())](std::uint32_t v) { return first + v; };
     for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
-        HalfEdge const other = topology.twin(h);
-        if (other != Topology::kNone && other < h) {
-            edge_point[h] = edge_point[other];
-            continue;
-        }
-        edge_point[h] = edges++;
-    }
-    std::uint32_t const first_face_point = edges;
-
-    for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
-        std::uint32_t const quad[4] = {topology.vertex_of(h), edge_point[h],
-                                       first_face_point + topology.face_of(h),
-                                       edge_point[topology.previous(h)]};
+        std::uint32_t const quad[4] = {vertex_point(topology.vertex_of(h)), edge_point(h),
+                                       topology.face_of(h), edge_point(topology.previous(h))};
         out.add_face(quad);
     }
     for (std::uint32_t f : mesh.holes)
@@ -70,14 +65,14 @@ ControlMesh catmull_clark_mesh(Topology const& topology, Sharpness const& sharpn
             out.holes.push_back(h);
     for (auto const& c : mesh.corners)
         if (float const left = decremented(c.sharpness); left > 0)
-            out.corners.push_back({c.vertex, left});
+            out.corners.push_back({vertex_point(c.vertex), left});
     for (auto const& c : mesh.creases) {
         HalfEdge const h = topology.find_edge(c.a, c.b);
         if (h == Topology::kNone) continue;
         auto const [first, second] = sharpness.halves(h);
         std::uint32_t const a = topology.vertex_of(h), b = topology.vertex_of(topology.next(h));
-        if (first > 0) out.creases.push_back({a, edge_point[h], first});
-        if (second > 0) out.creases.push_back({edge_point[h], b, second});
+        if (first > 0) out.creases.push_back({vertex_point(a), edge_point(h), first});
+        if (second > 0) out.creases.push_back({edge_point(h), vertex_point(b), second});
     }
     return out;
 }

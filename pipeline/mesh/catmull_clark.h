@@ -4,6 +4,7 @@
 #pragma once
 
 #include "pipeline/mesh/limit_constants.h"
+#include "pipeline/mesh/refinement.h"
 #include "pipeline/mesh/subdivision.h"
 
 #include <glm/vec3.hpp>
@@ -86,9 +87,12 @@ struct CatmullClark {
 /// One step, with the mesh's creases, corners and boundary rule. Tags go on to the new edges and
 /// vertices, decremented; the quads of holes are holes.
 ///
-/// \returns vertex points, then edge points in order of first meeting, then face points; quads face
-///          by face, each starting at its old vertex. Sums run in double and are rounded once.
-ControlMesh catmull_clark_step(Topology const& topology);
+/// \param first  of the mesh's vertices in the tables' vertex buffer; above 0 all faces are quads,
+///               for a step has made them
+/// \returns  the mesh: face points, edge points by their EdgeNumbers, vertex points; quads face by
+///           face, each starting at its old vertex. Sums run in double and are rounded once. And the
+///           tables by which kernels make the same points.
+RefinedStep catmull_clark_step(Topology const& topology, std::uint32_t first = 0);
 
 /// The step's faces and tags, without texture coordinates.
 ///

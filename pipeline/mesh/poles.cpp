@@ -119,6 +119,37 @@ std::vector<std::uint32_t> points_of(ControlMesh const& mesh)
     return parent;
 }
 
+namespace {
+
+// Of a pole's faces, each once, in their order.
+void add_pole(Poles& out, ControlMesh const& mesh, std::vector<std::uint32_t> around)
+{
+    out.first.push_back(std::uint32_t(out.faces.size()));
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    for (std::uint32_t f : around) {
+        auto const face = mesh.face(f);
+        out.faces.push_back({face[0], face[1], face[2], face[face.size() == 4 ? 3 : 0]});
+    }
+}
+
+} // namespace
+
+Poles vertices_as_poles(ControlMesh const& mesh)
+{
+    std::vector<std::uint32_t> const point = points_of(mesh);
+    std::vector<std::vector<std::uint32_t>> faces(mesh.positions.size());
+    for (std::uint32_t f = 0; f < mesh.faces(); ++f)
+        for (std::uint32_t v : mesh.face(f)) faces[point[v]].push_back(f);
+    Poles out;
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+        out.of_vertex.push_back(v);
+        add_pole(out, mesh, faces[point[v]]);
+    }
+    out.first.push_back(std::uint32_t(out.faces.size()));
+    return out;
+}
+
 Poles find_poles(Topology const& t)
 {
     ControlMesh const& mesh = t.mesh();
@@ -139,15 +170,7 @@ Poles find_poles(Topology const& t)
         out.of_vertex[v] = pole;
         for (HalfEdge h : t.ring(v)) faces[pole].push_back(t.face_of(h));
     }
-    for (std::vector<std::uint32_t>& around : faces) {
-        out.first.push_back(std::uint32_t(out.faces.size()));
-        std::sort(around.begin(), around.end());
-        around.erase(std::unique(around.begin(), around.end()), around.end());
-        for (std::uint32_t f : around) {
-            auto const face = mesh.face(f);
-            out.faces.push_back({face[0], face[1], face[2], face[face.size() == 4 ? 3 : 0]});
-        }
-    }
+    for (std::vector<std::uint32_t>& around : faces) add_pole(out, mesh, std::move(around));
     out.first.push_back(std::uint32_t(out.faces.size()));
     return out;
 }

@@ -36,6 +36,10 @@ struct Poles {
     }
 };
 
+/// Every vertex a pole of its own: of the mean normals of the faces around the vertex's point.
+/// \cost  linear in the faces around points
+Poles vertices_as_poles(ControlMesh const& mesh);
+
 /// The poles of a mesh of triangles and quads, at rest. Poles that an edge of no length joins are
 /// one.
 ///

@@ -23,7 +23,10 @@ RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step, int o
     }
     for (int s = 0; s < steps; ++s) {
         ControlMesh const& coarse = s ? *mesh_ : *base_;
-        auto fine = std::make_unique<ControlMesh const>(step(s ? *topology_ : *base_topology_));
+        std::uint32_t const first = s ? tables_.back().first_face_point() : 0;
+        RefinedStep refined = step(s ? *topology_ : *base_topology_, first);
+        auto fine = std::make_unique<ControlMesh const>(std::move(refined.mesh));
+        tables_.push_back(std::move(refined.tables));
         std::vector<PatchPlace> places;
         places.reserve(fine->faces());
         for (std::uint32_t f = 0; f < coarse.faces(); ++f) {
@@ -41,7 +44,12 @@ RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step, int o
 
 std::string RefinedMesh::vertex_in_words(std::uint32_t v) const
 {
-    if (v < base_->positions.size()) return "vertex " + std::to_string(base_->file_vertex(v) + 1);
+    // Vertex points are a step's last, in the order of the vertices.
+    std::uint32_t old = v;
+    auto step = tables_.rbegin();
+    for (; step != tables_.rend() && old >= step->faces + step->edges; ++step)
+        old -= step->faces + step->edges;
+    if (step == tables_.rend()) return "vertex " + std::to_string(base_->file_vertex(old) + 1);
     std::uint32_t const face = topology().face_of(topology().ring(v)[0]);
     return "the middle of face " + std::to_string(base_->file_face(place(face).face) + 1);
 }

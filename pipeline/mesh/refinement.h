@@ -5,7 +5,7 @@
 #pragma once
 
 #include "pipeline/mesh/patch_place.h"
-#include "pipeline/mesh/topology.h"
+#include "pipeline/mesh/subdivision_tables.h"
 
 #include <memory>
 
@@ -13,11 +13,16 @@ namespace tessemu {
 
 /// A step: quads' children are four quads, any other face's a quad for each corner, in the order of
 /// the corners; tags are carried along, each a step less sharp.
-using RefinementStep = ControlMesh (*)(Topology const&);
+struct RefinedStep {
+    ControlMesh mesh;
+    SubdivisionTables tables;
+};
+/// \param first  of the mesh's vertices in the vertex buffer
+using RefinementStep = RefinedStep (*)(Topology const&, std::uint32_t first);
 
 class RefinedMesh {
 public:
-    static constexpr int kMaxSteps = 7;
+    static constexpr int kMaxSteps = 8;
 
     /// \param steps      0 to kMaxSteps
     /// \param own_steps  how many of them the scheme needs on any account, up to steps
@@ -33,6 +38,8 @@ public:
     ControlMesh const& mesh() const { return steps_ ? *mesh_ : *base_; }
     Topology const& topology() const { return steps_ ? *topology_ : *base_topology_; }
     int steps() const { return steps_; }
+    /// By step: what kernels make mesh()'s positions from base()'s with, in one buffer of all.
+    std::span<SubdivisionTables const> tables() const { return tables_; }
     /// The mesh that cameras and sizes are taken from: the file's after the scheme's own steps,
     /// however often it is subdivided beyond them.
     ControlMesh const& reference() const
@@ -54,6 +61,7 @@ private:
     std::unique_ptr<ControlMesh const> base_, mesh_, reference_;
     std::unique_ptr<Topology const> base_topology_, topology_;
     int steps_, own_steps_;
+    std::vector<SubdivisionTables> tables_;
     std::vector<PatchPlace> places_; // by face of mesh()
 };
 

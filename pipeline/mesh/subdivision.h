@@ -22,6 +22,38 @@
 
 namespace tessemu {
 
+/// Edges numbered as LOOP10's tables have them: faces in order, at corner k the edge to corner k-1,
+/// when it is first met.
+class EdgeNumbers {
+public:
+    /// \cost  linear in the corners of faces
+    explicit EdgeNumbers(Topology const& topology);
+    std::size_t size() const { return first_.size(); }
+    std::uint32_t operator[](HalfEdge h) const { return number_[h]; }
+    /// The half-edge that an edge was first met as: it ends at the face's corner k.
+    HalfEdge first(std::size_t edge) const { return first_[edge]; }
+
+private:
+    std::vector<std::uint32_t> number_;
+    std::vector<HalfEdge> first_;
+};
+
+/// How many of an edge's faces are triangles to be smoothed.
+inline int triangles_to_smooth(Topology const& t, std::uint32_t face, std::uint32_t other)
+{
+    ControlMesh const& mesh = t.mesh();
+    if (!mesh.smooth_triangles) return 0;
+    return (mesh.face(face).size() == 3) + (mesh.face(other).size() == 3);
+}
+
+/// Whether a vertex's new point lies between the points of two rules (vertex_point).
+inline bool is_blended(RingSharpness const& now)
+{
+    VertexRule const rule = now.rule();
+    return rule != VertexRule::Smooth && rule != VertexRule::Dart && now.is_semi_sharp() &&
+           now.after_step().rule() != rule;
+}
+
 /// The new point of a vertex.
 ///
 /// \param edge  far end of edge j
@@ -44,20 +76,16 @@ X vertex_point(RingSharpness const& now, std::size_t n, X const& v, Edge const& 
         }
         return Masks::vertex(int(n), v, edges, faces);
     };
-    VertexRule const rule = now.rule();
-    if (rule == VertexRule::Smooth || rule == VertexRule::Dart || !now.is_semi_sharp())
-        return by_rule_of(rule, now);
+    if (!is_blended(now)) return by_rule_of(now.rule(), now);
     RingSharpness const after = now.after_step();
-    VertexRule const then = after.rule();
-    if (then == rule) return by_rule_of(rule, now);
     double const w = fractional_weight(now, after);
-    return by_rule_of(then, after) * (1 - w) + by_rule_of(rule, now) * w;
+    return by_rule_of(after.rule(), after) * (1 - w) + by_rule_of(now.rule(), now) * w;
 }
 
 /// The points after a step.
 ///
 /// \param x  of the mesh's vertices
-/// \returns  vertices' points, then edges' in order of first meeting, then faces', if it has them
+/// \returns  the faces' points, if it has them, then edges' by their EdgeNumbers, then vertices'
 /// \cost     linear in the corners of faces
 template <class Masks, class X>
 std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpness,
@@ -72,8 +100,24 @@ std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpne
         for (std::size_t i = 1; i < face.size(); ++i) sum += x[face[i]];
         face_point.push_back(Masks::face(sum, int(face.size())));
     }
+    EdgeNumbers const edges(topology);
     std::vector<X> out;
-    out.reserve(x.size() + mesh.face_vertices.size() / 2 + mesh.faces());
+    out.reserve(mesh.faces() + edges.size() + x.size());
+    if constexpr (Masks::kFacePoints) out = face_point;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        HalfEdge const h = edges.first(e), other = topology.twin(h);
+        X const &a = x[topology.vertex_of(topology.next(h))], &b = x[topology.vertex_of(h)];
+        float const s = sharpness.edge(h);
+        double const w = s > 0 ? crease_weight(s, sharpness.halves(h)) : 0;
+        if (w == 1) {
+            out.push_back(Masks::crease_edge(a, b));
+            continue;
+        }
+        std::uint32_t const f = topology.face_of(h), g = topology.face_of(other);
+        X const smooth =
+            Masks::edge(a, b, face_point[f], face_point[g], triangles_to_smooth(topology, f, g));
+        out.push_back(w == 0 ? smooth : smooth * (1 - w) + Masks::crease_edge(a, b) * w);
+    }
     RingSharpness plain, sharp;
     for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
         auto const ring = topology.ring(v);
@@ -92,23 +136,6 @@ std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpne
         if (!is_plain) sharpness.around(v, sharp);
         out.push_back(vertex_point<Masks>(is_plain ? plain : sharp, ring.size(), x[v], edge, face));
     }
-    for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
-        HalfEdge const other = topology.twin(h);
-        if (other != Topology::kNone && other < h) continue;
-        X const &a = x[topology.vertex_of(h)], &b = x[topology.vertex_of(topology.next(h))];
-        float const s = sharpness.edge(h);
-        double const w = s > 0 ? crease_weight(s, sharpness.halves(h)) : 0;
-        if (w == 1) {
-            out.push_back(Masks::crease_edge(a, b));
-            continue;
-        }
-        std::uint32_t const f = topology.face_of(h), g = topology.face_of(other);
-        int const triangles =
-            mesh.smooth_triangles ? (mesh.face(f).size() == 3) + (mesh.face(g).size() == 3) : 0;
-        X const smooth = Masks::edge(a, b, face_point[f], face_point[g], triangles);
-        out.push_back(w == 0 ? smooth : smooth * (1 - w) + Masks::crease_edge(a, b) * w);
-    }
-    if constexpr (Masks::kFacePoints) out.insert(out.end(), face_point.begin(), face_point.end());
     return out;
 }
 

@@ -5,9 +5,8 @@
 #pragma once
 
 #include "emu/hull_shader.h"
-#include "shaders_cpp/domain_edges.h"
+#include "shaders_cpp/cage_form/cage_factors.h"
 #include "shaders_cpp/skinning.h"
-#include "shaders_cpp/tess_factor_rule.h"
 
 namespace tessemu {
 
@@ -50,8 +49,6 @@ struct SkinnedNormalVertexShader {
 };
 
 /// Hands control points on; the factors are those of straight edges between them.
-///
-/// An edge runs from the end that comes first by x, y, z: patches on both sides see the same one.
 template <TessellatorDomain kDomain_> struct CageHullShader {
     static constexpr TessellatorDomain kDomain = kDomain_;
     static constexpr int kSides = sides_of(kDomain);
@@ -78,16 +75,7 @@ template <TessellatorDomain kDomain_> struct CageHullShader {
     std::array<T, 6> tess_factors(PatchInput, Points<T> const&, Points<T> const& out,
                                   ControlPoints<ControlVertex<T>> const&) const
     {
-        auto const end = [&](int k) { return out[k % kSides].position; };
-        return factors.template factors<kDomain, T>(
-            [&](int k) {
-                float3<T> const a = end(k), b = end(k + 1);
-                return straight_edge(a, b);
-            },
-            [&](int k) {
-                float3<T> const a = end(k), b = end(k + 1);
-                return (a.x > b.x) | ((a.x == b.x) & ((a.y > b.y) | ((a.y == b.y) & (a.z > b.z))));
-            });
+        return cage_factors<kDomain, T>(factors, [&](int k) { return out[k].position; });
     }
 };
 

@@ -137,7 +137,7 @@ TEST(CatmullClark, SplitsEveryFaceAndKeepsTheLimit)
     ControlMesh const m =
         read_obj("v 0 0 0\nv 2 0 0\nv 3 2 0\nv 1 3 0\nv -1 2 0\nf 1 2 3 4 5\n", "pentagon").mesh;
     Topology const t(m);
-    ControlMesh const s = catmull_clark_step(t);
+    ControlMesh const s = catmull_clark_step(t).mesh;
     EXPECT_EQ(s.faces(), 5u);
     EXPECT_EQ(s.positions.size(), 5u + 5 + 1);
     for (std::size_t f = 0; f < 5; ++f) EXPECT_EQ(s.face(f).size(), 4u);
