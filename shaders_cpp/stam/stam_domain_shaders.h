@@ -121,8 +121,8 @@ struct StamSharedDomainShader {
         mask_of<T> const spoke = edges & 1 ? none : mask_of<T>(at.on[0] & !corner);
         mask_of<T> const other_spoke = edges & 2 ? none : mask_of<T>(at.on[3] & !corner);
         mask_of<T> const within = !(at.on[0] | at.on[3] | outer);
-        mask_of<T> const own = owned ? mask_of<T>(within | spoke | other_spoke)
-                                     : mask_of<T>(within | spoke);
+        mask_of<T> const own =
+            owned ? mask_of<T>(within | spoke | other_spoke) : mask_of<T>(within | spoke);
         mask_of<T> const of_owner = owned ? none : other_spoke;
         auto const rim = [&](T u, T v) {
             return WatertightPatch<Rim>{}({u, v, T(0), id}, patch, registers);
@@ -133,8 +133,8 @@ struct StamSharedDomainShader {
             s = when(
                 i == 0 ? own : of_owner,
                 [&] {
-                    TangentFrame<T> const f = i == 0 ? inside.of_patch<T>(id, in.u, in.v)
-                                                     : inside.of_patch<T>(owner, in.v, zero);
+                    TangentFrame<T> const f = inside.template of_patch<T>(
+                        i == 0 ? id : owner, i == 0 ? in.u : in.v, i == 0 ? in.v : zero);
                     return SurfacePoint<T>{f.position, unit_or(cross(f.du, f.dv), [&] {
                                                return rim(select(in.u > half, one, zero),
                                                           select(in.v > half, one, zero))

@@ -34,23 +34,24 @@ struct StamProjectionShader {
     {
         using Int = int_of<T>;
         group.for_each_thread([&](ComputeInput<T> const& in) {
-            std::int32_t const number =
-                in.group_id.x + in.group_id.y * std::int32_t(kMaxDispatch);
+            std::int32_t const number = in.group_id.x + in.group_id.y * std::int32_t(kMaxDispatch);
             std::int32_t const patch = number / groups_a_patch(functions),
                                part = number % groups_a_patch(functions);
             Int const function = in.group_thread_id.x + Int(part * kThreads[0]);
             mask_of<T> const here = function < Int(functions);
             when<T>(here, [&] {
                 float3<T> const sum = stencil_row<T>(functions, [&](int k) {
-                    return StencilTerm{
-                        here,
-                        [=, this]() -> T { return load<T>(inverse, Int(k * functions) + function); },
-                        [=, this]() -> float3<T> {
-                            std::int32_t const v =
-                                load<T>(nets, patch * functions + k) * std::int32_t(stride);
-                            return {load<T>(positions, v), load<T>(positions, v + 1),
-                                    load<T>(positions, v + 2)};
-                        }};
+                    return StencilTerm{here,
+                                       [=, this]() -> T {
+                                           return load<T>(inverse, Int(k * functions) + function);
+                                       },
+                                       [=, this]() -> float3<T> {
+                                           std::int32_t const v =
+                                               load<T>(nets, patch * functions + k) *
+                                               std::int32_t(stride);
+                                           return {load<T>(positions, v), load<T>(positions, v + 1),
+                                                   load<T>(positions, v + 2)};
+                                       }};
                 });
                 Int const out = (Int(patch * functions) + function) * Int(3);
                 store(projected, out, sum.x);

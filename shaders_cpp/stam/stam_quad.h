@@ -98,7 +98,11 @@ constexpr TangentFrame<T> stam_quad(StamTables<Weight> const& tables, Point cons
     StamFrame<T> s{zero, zero, zero};
     auto const corner = (u == T(0)) & (v == T(0));
     s = when(
-        corner, [&] { return StamFrame<T>{point(0), point(1), point(2)}; }, s);
+        corner,
+        [&] {
+            return StamFrame<T>{point(0), point(1), point(2)};
+        },
+        s);
     s = when(
         !corner,
         [&] {
@@ -128,8 +132,8 @@ constexpr TangentFrame<T> stam_quad(StamTables<Weight> const& tables, Point cons
                             };
                             T const power = load<T>(tables.powers, first_power + Int(i));
                             T const phi = power * along(q), phi_v = power * along(dq);
-                            T const sum_u = A.d[0] * q[0] + A.d[1] * q[1] + A.d[2] * q[2] +
-                                            A.d[3] * q[3];
+                            T const sum_u =
+                                A.d[0] * q[0] + A.d[1] * q[1] + A.d[2] * q[2] + A.d[3] * q[3];
                             T const phi_u = power * sum_u;
                             float3<T> const C = point(i);
                             r.position = r.position + phi * C;

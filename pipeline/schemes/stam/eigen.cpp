@@ -28,12 +28,12 @@ struct OuterBlock {
     OuterBlock()
     {
         constexpr double column[3][3] = {{1, 1, 1}, {1, 0, -1}, {1, -0.5, 1}}; // by eigenvalue
-        constexpr double row[3][3] = {{1. / 6, 2. / 3, 1. / 6}, {0.5, 0, -0.5},
-                                      {1. / 3, -2. / 3, 1. / 3}};
+        constexpr double row[3][3] = {
+            {1. / 6, 2. / 3, 1. / 6}, {0.5, 0, -0.5}, {1. / 3, -2. / 3, 1. / 3}};
         for (std::size_t k = 0; k < 3; ++k) {
             // mu x = 1/64 x + 3/32 (2,1) + 1/64 (2,0)
-            double const fed = (3. / 32 * column[k][0] + 1. / 64 * column[k][1]) /
-                               (eigenvalues[k] - 1. / 64);
+            double const fed =
+                (3. / 32 * column[k][0] + 1. / 64 * column[k][1]) / (eigenvalues[k] - 1. / 64);
             for (std::size_t side : {0, 3}) {
                 vectors[0][side + k] = fed;
                 for (std::size_t i = 0; i < 3; ++i) {
@@ -172,8 +172,7 @@ public:
                 double const y = std::abs(gap) < 1e-9 ? 0 : right / gap;
                 for (std::size_t o = 0; o < kOuter; ++o)
                     vector(ring + o, at) += block.vectors[o][k] * y;
-                for (std::size_t p = 0; p < ring; ++p)
-                    inverse(ring + k, p) -= y * inverse(at, p);
+                for (std::size_t p = 0; p < ring; ++p) inverse(ring + k, p) -= y * inverse(at, p);
             }
         }
         for (std::size_t k = 0; k < kOuter; ++k) {
@@ -209,14 +208,8 @@ public:
     }
 
 private:
-    double wave(int a, bool sine) const
-    {
-        return sine ? sin_pi(a, int(n_)) : cos_pi(a, int(n_));
-    }
-    std::size_t point(int x, int y) const
-    {
-        return std::size_t(stam_net_point(int(n_), x, y));
-    }
+    double wave(int a, bool sine) const { return sine ? sin_pi(a, int(n_)) : cos_pi(a, int(n_)); }
+    std::size_t point(int x, int y) const { return std::size_t(stam_net_point(int(n_), x, y)); }
     double& vector(std::size_t p, std::size_t f) { return vectors[p * size_ + f]; }
     double& inverse(std::size_t f, std::size_t p) { return out_.inverse[f * size_ + p]; }
 
