@@ -125,6 +125,9 @@ struct StamSharedDomainShader {
             owned ? mask_of<T>(within | spoke | other_spoke) : mask_of<T>(within | spoke);
         mask_of<T> const of_owner = owned ? none : other_spoke;
         auto const rim = [&](T u, T v) {
+            // The shader of the patches beside it, whose sums are numbered from its first line.
+            SiteScope<T> const here;
+            if constexpr (ScalarTraits<T>::kSites) site_state.enter(0, 0);
             return WatertightPatch<Rim>{}({u, v, T(0), id}, patch, registers);
         };
         T const zero(0), one(1), half(0.5);

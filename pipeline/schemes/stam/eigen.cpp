@@ -229,8 +229,8 @@ int stam_net_point(int n, int x, int y)
     if (y == 2) return outer + 5 - x;
     if (x == 1) return y == 1 ? f(0) : y == 0 ? e(0) : f(-1);
     if (x == 0) return y == 1 ? e(1) : y == 0 ? 0 : e(-1);
-    assert(y >= 0); // (-1,-1) is a point of valence 4 alone
-    return y == 1 ? f(1) : e(2);
+    assert(y >= 0 || n == 4);
+    return y == 1 ? f(1) : y == 0 ? e(2) : f(2);
 }
 
 StamEigen stam_eigen(int valence)
