@@ -77,6 +77,8 @@ public:
     std::vector<PatchCount> patch_counts() const final;
     std::vector<std::string> warnings() const final { return warnings_; }
     std::optional<AnotherWay> another_way() const final { return another_way_; }
+    /// Whether patches are WatertightPatches whose control points begin with p, e+, e-.
+    virtual bool has_shared_edges() const { return true; }
 
 protected:
     StencilForm(std::shared_ptr<RefinedMesh const> mesh, std::vector<PatchKind> kinds)

@@ -174,6 +174,8 @@ public:
         say_what_is_different();
     }
 
+    bool has_shared_edges() const override { return choices_.shared_edges; }
+
 private:
     std::size_t kind_of(std::uint32_t face) const override
     {
