@@ -80,6 +80,7 @@ VerdictRow row_of(CheckedVerdict const& v)
                              {site.bits[0], site.bits[1]},
                              site.ulp,
                              {site.pixel[0], site.pixel[1]},
+                             site.edge,
                              site.text});
     return row;
 }

@@ -419,6 +419,7 @@ std::string check_report(ReportHeader const& header, std::vector<VerdictRow> con
                 site["faces"] = {s.face[0] + 1, s.face[1] + 1};
                 site["vertices"] = {s.vertex[0] + 1, s.vertex[1] + 1};
                 site["t"] = s.t / 65536.0;
+                if (!s.edge.empty()) site["edge"] = s.edge;
             }
             if (s.component >= 0) {
                 site["component"] = std::string(1, "xyz"[s.component]);

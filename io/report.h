@@ -93,7 +93,8 @@ struct VerdictSite {
     int component;                       ///< -1: no value differs
     std::uint32_t bits[2];
     std::uint64_t ulp;
-    int pixel[2]; ///< -1: no pixel
+    int pixel[2];     ///< -1: no pixel
+    std::string edge; ///< in the scheme's words; empty: none
     std::string text;
 };
 struct VerdictRow {

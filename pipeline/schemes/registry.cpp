@@ -23,6 +23,7 @@ std::vector<std::unique_ptr<Scheme>> const& schemes()
         { Make make_gregory_two_stage; s.push_back(make_gregory_two_stage()); }
         { Make make_acc; s.push_back(make_acc()); }
         { Make make_pm; s.push_back(make_pm()); }
+        { Make make_stam; s.push_back(make_stam()); }
         { Make make_phong; s.push_back(make_phong()); }
         // clang-format on
         return s;
@@ -55,9 +56,12 @@ std::string in_words(MeshRequirements const& t)
                     : t.quads              ? "quads"
                                            : "triangles";
     auto const after = [](int steps) { return " after " + in_words_of_steps(steps); };
-    if (t.steps)
+    if (t.steps) {
         s += "," + after(t.steps);
-    else if (t.quads && t.steps_with_polygons)
+        int const with_triangles = t.steps_with_triangles.value_or(t.steps);
+        if (t.triangles && with_triangles != t.steps)
+            s += " (" + std::to_string(with_triangles) + " where a face is no quad)";
+    } else if (t.quads && t.steps_with_polygons)
         s += ", larger faces" + after(t.steps_with_polygons);
     if (!t.boundary) s += ", closed meshes only";
     if (t.edges != t.kAnyNumber) s += ", at most " + std::to_string(t.edges) + " edges at a vertex";
@@ -161,17 +165,19 @@ MeshFacts facts_of(Topology const& topology)
     return out;
 }
 
-int steps_of(MeshRequirements const& t, bool polygons, int subdivide)
+int steps_of(MeshRequirements const& t, MeshFacts const& m, int subdivide)
 {
-    return subdivide + (polygons ? t.steps_with_polygons : t.steps);
+    return subdivide + (m.polygons    ? t.steps_with_polygons
+                        : m.triangles ? t.steps_with_triangles.value_or(t.steps)
+                                      : t.steps);
 }
 
 bool takes(MeshRequirements const& t, MeshFacts const& m, int subdivide)
 {
     if (m.boundary && !t.boundary) return false;
     if (m.edges > t.edges) return false;
-    if (m.sides > t.edges && steps_of(t, m.polygons > 0, subdivide) > 0) return false;
-    if (steps_of(t, m.polygons > 0, subdivide) > 0) return t.quads; // which it makes of all faces
+    if (m.sides > t.edges && steps_of(t, m, subdivide) > 0) return false;
+    if (steps_of(t, m, subdivide) > 0) return t.quads; // which it makes of all faces
     return !m.polygons && (t.quads || !m.quads) && (t.triangles || !m.triangles);
 }
 
@@ -189,7 +195,7 @@ void refuse(SchemeInfo const& info, MeshFacts const& m, int subdivide)
                                    ", the first is face " + std::to_string(first + 1) + help);
     };
     char const* const good = info.takes.quads ? "quads" : "triangles";
-    if (steps_of(info.takes, m.polygons > 0, subdivide) > 0) {
+    if (steps_of(info.takes, m, subdivide) > 0) {
         if (!info.takes.quads)
             throw MeshError(0, info.name + " draws " + good + " only: a step of subdivision makes" +
                                    " quads of all " + std::to_string(m.faces) +
@@ -287,22 +293,26 @@ SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const
         mesh = std::move(manifold.mesh);
         warn(out, options, in_words(manifold.repairs, options.lines));
     }
-    std::size_t polygons = 0, largest = 0;
+    MeshFacts sides;
     for (std::size_t f = 0; f < mesh.faces(); ++f) {
-        largest = std::max(largest, mesh.face(f).size());
-        polygons += mesh.face(f).size() > 4;
+        std::size_t const n = mesh.face(f).size();
+        sides.sides = std::max(sides.sides, std::uint32_t(n));
+        sides.polygons += n > 4;
+        sides.triangles += n == 3;
     }
-    int const own = steps_of(info.takes, polygons > 0, 0);
+    int const own = steps_of(info.takes, sides, 0);
     if (must_be_taken) refuse(info, facts_of(Topology(mesh)), options.subdivide); // before the work
     out.mesh = std::make_shared<RefinedMesh const>(std::move(mesh), own + options.subdivide,
                                                    info.takes.step);
     RefinedMesh const& refined = *out.mesh;
-    if (polygons && own > 0)
+    if (sides.polygons && own > 0)
         warn(out, options,
-             {std::to_string(polygons) + " faces have more than 4 sides (up to " +
-              std::to_string(largest) + "): one Catmull-Clark step makes " +
-              std::to_string(refined.base().face_vertices.size()) + " quads of the mesh's " +
-              std::to_string(refined.base().faces()) + " faces"});
+             {std::to_string(sides.polygons) + " faces have more than 4 sides (up to " +
+              std::to_string(sides.sides) + "): " +
+              (own == 1 ? "one Catmull-Clark step makes "
+                        : std::to_string(own) + " Catmull-Clark steps make ") +
+              std::to_string(refined.base().face_vertices.size() << 2 * (own - 1)) +
+              " quads of the mesh's " + std::to_string(refined.base().faces()) + " faces"});
     return out;
 }
 

@@ -55,6 +55,8 @@ struct MeshRequirements {
     /// Steps of subdivision that the scheme asks for: of a mesh of triangles and quads, and where a
     /// face has more sides.
     int steps = 0, steps_with_polygons = 1;
+    /// And where a face is a triangle; without a value: `steps`.
+    std::optional<int> steps_with_triangles = {};
     RefinementStep step = catmull_clark_step;
 };
 
@@ -65,6 +67,9 @@ struct SchemeInfo {
     std::string summary;
     MeshRequirements takes = {};
     std::vector<SchemeParameter> parameters = {};
+    /// Parameters under which patches that meet give their shared points equal bits, where the
+    /// defaults do not promise it: those of a scheme that draws as its paper does.
+    std::vector<std::pair<std::string, std::string>> watertight_with = {};
 };
 
 class Scheme {
