@@ -552,10 +552,10 @@ std::string valence_table(std::vector<PatchCount> const& patches)
     auto const known = count([](ValenceType const&t) { return t.is_of_loop10(); }),
                isolated =
                    count([](ValenceType const&t) { return t.is_of_loop10() && t.is_isolated(); });
-    std::string out = fmt::format(
-        "\nvalences of a quad's corners: {} types, {} of LOOP10's {}, {} of its {} with one "
-        "extraordinary vertex or none\n",
-        used.size(), known, valence_types().size(), isolated, isolated_valence_types().size());
+    std::string out = fmt::format("\ncorner valences of quads: {} types, {} of LOOP10's {}, {} of "
+                                  "the {} that isolation leaves\n",
+                                  used.size(), known, valence_types().size(), isolated,
+                                  isolated_valence_types().size());
     for (std::size_t i = 0; i < std::min(kShown, used.size()); ++i) {
         auto const& [type, n] = used[i];
         bool const last = i % kALine == kALine - 1 || i + 1 == std::min(kShown, used.size());

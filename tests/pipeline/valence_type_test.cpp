@@ -143,6 +143,17 @@ TEST(ValenceType, RowsMadeOfATypeEqualThoseOfAnyPatchOfItBitForBit)
     EXPECT_GT(seen.size(), 15u);
 }
 
+TEST(ValenceType, AfterAStepNoTableIsMadeBesidesThoseMadeAhead)
+{
+    auto const weights = [](ControlMesh const& mesh) {
+        SchemeOnMesh const on = gregory(mesh, "ahead", 1);
+        return dynamic_cast<StencilForm const&>(*on.patches).tables().weights;
+    };
+    std::vector<float> const ten = weights(test::torus(5, 4).mesh); // regular quads alone
+    EXPECT_GT(ten.size(), 9u * 20 * 14);
+    EXPECT_EQ(weights(all_valences(12)), ten);
+}
+
 // Whether tables are made on demand or ahead changes their places and nothing else.
 TEST(ValenceType, TablesMadeAheadDrawTheSameBitsAndCountTheSame)
 {
