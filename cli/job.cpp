@@ -71,9 +71,12 @@ Config config_of(ModelRequest const& o, Parameters const& parameters)
     SchemeInfo const info = o.scheme->info();
     Config out{{"scheme", info.name}, {"subdivide", std::int64_t(o.build.subdivide)}};
     if (o.build.join) out.emplace_back("join", *o.build.join);
-    for (SchemeParameter const& p : info.parameters)
+    auto const add = [&](SchemeParameter const& p) {
         std::visit([&](auto const& value) { out.emplace_back(p.name, value); },
                    parameters.values().at(p.name));
+    };
+    for (SchemeParameter const& p : info.parameters) add(p);
+    if (parameters.values().count(sort_parameter().name)) add(sort_parameter());
     return out;
 }
 
