@@ -21,7 +21,7 @@ public:
     template <class... Values>
     void text(fmt::format_string<Values...> form, Values const&... values)
     {
-        fmt::format_to(std::back_inserter(buffer_), form, values...);
+        fmt::vformat_to(fmt::appender(buffer_), form, fmt::make_format_args(values...));
     }
     template <class Value> void bytes(Value const& value)
     {

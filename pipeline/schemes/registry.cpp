@@ -94,13 +94,7 @@ Parameters::Value parsed(SchemeInfo const& info, SchemeParameter const& p, std::
 SchemeParameter const& sort_parameter()
 {
     static SchemeParameter const sort{
-        "sort",
-        "order of the mesh's vertices and faces for the tables of subdivision; valence: those of "
-        "one valence side by side",
-        0,
-        0,
-        0,
-        {"none", "valence"}};
+        "sort", "order of vertices and faces for the tables", 0, 0, 0, {"none", "valence"}};
     return sort;
 }
 
