@@ -167,7 +167,6 @@ DrawnMesh drawn_mesh(RefinedMesh const& refined, SurfaceSettings const& settings
     out.mesh.holes.clear();
     for (std::uint32_t f = 0; f < hidden.size(); ++f)
         if (hidden[f]) out.mesh.holes.push_back(f);
-    out.mesh.boundary = BoundaryRule::EdgeOnly; // the same curve
     return out;
 }
 

@@ -48,14 +48,14 @@ std::vector<Cage> cages()
     out.push_back({"prism", test::prism(5)});
     out.push_back({"joined random", test::join_faces(test::random_mesh(7), 7)});
     out.push_back({"fin", finned_cube()});
-    ControlMesh tagged = load_model("golem").mesh;
+    ControlMesh tagged = load_model("jug").mesh; // quads and triangles
     for (std::uint32_t f = 0; f < 20; ++f)
         tagged.creases.push_back(
             {tagged.face(f)[0], tagged.face(f)[1], f % 3 ? 0.4f + 0.3f * float(f) : 10});
     for (std::uint32_t v = 0; v < 30; v += 7)
         tagged.corners.push_back({v, v % 2 ? 0.6f * float(v) : 12});
     tagged.holes = {3, 17, 40};
-    out.push_back({"tagged golem", tagged});
+    out.push_back({"tagged jug", tagged});
     return out;
 }
 
