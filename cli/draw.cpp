@@ -104,8 +104,7 @@ std::vector<double> as_doubles(glm::dvec3 v)
 void draw_cage(RefinedMesh const& refined, FrameSettings const& f, ThreadPool const& threads,
                Frame& frame)
 {
-    ControlMesh mesh = refined.mesh();
-    mesh.positions = drawn_positions(refined, f, threads);
+    ControlMesh const mesh = drawn_mesh(refined, f, threads).mesh;
     draw_colored_mesh(control_mesh_picture(Topology(mesh)), f, 0.45f, threads, frame);
 }
 

@@ -71,16 +71,17 @@ Config config_of(ModelRequest const& o, Parameters const& parameters)
     SchemeInfo const info = o.scheme->info();
     Config out{{"scheme", info.name}, {"subdivide", std::int64_t(o.build.subdivide)}};
     if (o.build.join) out.emplace_back("join", *o.build.join);
-    for (SchemeParameter const& p : info.parameters)
+    auto const add = [&](SchemeParameter const& p) {
         std::visit([&](auto const& value) { out.emplace_back(p.name, value); },
                    parameters.values().at(p.name));
+    };
+    for (SchemeParameter const& p : info.parameters) add(p);
+    if (parameters.values().count(sort_parameter().name)) add(sort_parameter());
     return out;
 }
 
-namespace {
-
-Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
-         MakeSurface& make)
+Job open_job(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
+             MakeSurface& make)
 {
     Job job;
     job.frame.machine = shading.machine();
@@ -100,9 +101,10 @@ Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const
     auto const& more = job.surface.warnings;
     job.header.warnings.insert(job.header.warnings.end(), more.begin(), more.end());
     job.header.warnings = without_folder(std::move(job.header.warnings), job.path);
-    job.header.config = config_of(o, job.surface.parameters);
     return job;
 }
+
+namespace {
 
 void add_config(Config& c, ShadingRequest const& o)
 {
@@ -215,7 +217,8 @@ void keep_inputs(RunOutput const& out, SurfaceRequest const& o)
 
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb)
 {
-    Job job = open(o, shading, verb, build_scheme);
+    Job job = open_job(o, shading, verb, build_scheme);
+    job.header.config = config_of(o, job.surface.parameters);
     add_config(job.header.config, shading);
     return job;
 }
@@ -223,7 +226,7 @@ Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string co
 Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
 {
     check_request(o);
-    Job job = open(o.model, o.shading, verb, make);
+    Job job = open_job(o.model, o.shading, verb, make);
     FrameSettings& f = job.frame;
     f.partitioning = o.partitioning;
     f.tess_factor = float(o.tess);
@@ -237,7 +240,7 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     DisplaceRequest::Heights const& heights = o.displace.heights;
     if (heights.kind == DisplaceRequest::Heights::Kind::Image)
         h.inputs.emplace_back(name_of(heights), sha256_of(read_file(heights.image)));
-    Config& c = h.config;
+    Config& c = h.config = config_of(o.model, job.surface.parameters);
     c.emplace_back("tess", o.tess);
     c.emplace_back("partitioning", std::string(name_of(o.partitioning)));
     add_config(c, o.shading);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/report.h"
 
+#include "io/control_mesh_writer.h"
 #include "io/result_diff.h"
 #include "io/sha256.h"
 
@@ -281,6 +282,64 @@ std::string export_report(ReportHeader const& header, ListStatistics const& stat
     add_statistics(j, statistics.total);
     add_commands(j, statistics.commands);
     return finish(std::move(j), header, [&](Sha256& hash) { mesh.add_to_hash(hash); });
+}
+
+std::string subdivide_report(ReportHeader const& header, ListStatistics const& statistics,
+                             std::vector<SubdivisionRow> const& steps, ControlMesh const& mesh,
+                             Placement const& placement)
+{
+    Json j = start(header);
+    j["mesh"] = {{"vertices", mesh.positions.size()}, {"faces", mesh.faces()}};
+    add_statistics(j, statistics.total);
+    add_commands(j, statistics.commands);
+    j["steps"] = Json::array();
+    for (SubdivisionRow const& s : steps) {
+        Json kernels = Json::array();
+        for (KernelRow const& k : s.kernels) {
+            Json loops = Json::array();
+            for (LoopRow const& l : k.loops)
+                loops.push_back({{"threads_in_step", l.threads_in_step},
+                                 {"turns_needed", l.needed},
+                                 {"turns_run", l.run},
+                                 {"lanes_lost", l.lost}});
+            kernels.push_back({{"kernel", k.kernel},
+                               {"threads", k.threads},
+                               {"flops", to_json(k.flops)},
+                               {"flops_loop10", flops_loop10(k.flops)},
+                               {"index_fetches", k.index_fetches},
+                               {"vertex_fetches", k.vertex_fetches},
+                               {"fetched_bytes", k.fetched_bytes},
+                               {"loops", loops}});
+        }
+        j["steps"].push_back({{"faces", s.faces},
+                              {"edges", s.edges},
+                              {"vertices", s.vertices},
+                              {"kernels", kernels}});
+    }
+    return finish(std::move(j), header, [&](Sha256& hash) { add_to_hash(mesh, placement, hash); });
+}
+
+std::string subdivide_table(std::vector<SubdivisionRow> const& steps)
+{
+    if (steps.empty()) return "";
+    std::string out;
+    auto const line = [&](auto const&... column) {
+        out += fmt::format("{:>4} {:<14} {:>10} {:>12} {:>12} {:>12} {:>12} {:>14} {:>7} {:>7}\n",
+                           column...);
+    };
+    line("", "", "", "", "", "index", "vertex", "bytes", "lost at", "lost at");
+    line("step", "kernel", "threads", "add", "mul, div", "fetches", "fetches", "fetched", "32",
+         "64");
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        for (KernelRow const& k : steps[i].kernels) {
+            auto const lost = [&](std::size_t l) {
+                return l < k.loops.size() ? fmt::format("{:.2f} %", 100 * k.loops[l].lost) : "-";
+            };
+            line(i + 1, k.kernel, counted(k.threads), counted(k.flops.add),
+                 counted(flops_loop10(k.flops)), counted(k.index_fetches),
+                 counted(k.vertex_fetches), counted(k.fetched_bytes), lost(0), lost(1));
+        }
+    return out + "\n";
 }
 
 std::string info_report(ReportHeader const& header, MeshSummary const& s,

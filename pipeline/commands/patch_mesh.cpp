@@ -62,20 +62,6 @@ VertexSource add_vertices(CommandList& list, RefinedMesh const& refined,
     return {std::span(*points).subspan(first * stride), 3, room.stride};
 }
 
-std::vector<glm::vec3> drawn_positions(RefinedMesh const& mesh, SurfaceSettings const& settings,
-                                       ThreadPool const& threads)
-{
-    CommandList list;
-    VertexSource const points = add_vertices(list, mesh, settings);
-    run_commands(list, threads);
-    std::vector<glm::vec3> out;
-    for (std::size_t v = 0; v < mesh.mesh().positions.size(); ++v) {
-        float const* const p = points.floats.data() + v * std::size_t(points.stride);
-        out.emplace_back(p[0], p[1], p[2]);
-    }
-    return out;
-}
-
 std::span<float const> add_pole_normals(CommandList& list, Poles const& poles,
                                         VertexSource const& positions, Machine const& machine,
                                         char const* name)
@@ -162,6 +148,25 @@ std::vector<char> hidden_faces(RefinedMesh const& refined, std::vector<std::stri
     }
     std::vector<char> out(refined.mesh().faces());
     for (std::uint32_t f = 0; f < out.size(); ++f) out[f] = hidden[refined.place(f).face];
+    return out;
+}
+
+DrawnMesh drawn_mesh(RefinedMesh const& refined, SurfaceSettings const& settings,
+                     ThreadPool const& threads)
+{
+    CommandList list;
+    VertexSource const points = add_vertices(list, refined, settings);
+    DrawnMesh out{refined.mesh(), run_commands(list, threads)};
+    for (std::size_t v = 0; v < out.mesh.positions.size(); ++v) {
+        float const* const p = points.floats.data() + v * std::size_t(points.stride);
+        out.mesh.positions[v] = {p[0], p[1], p[2]};
+    }
+    if (refined.steps() == 0 || out.mesh.boundary != BoundaryRule::None) return out;
+    std::vector<std::string> warnings;
+    std::vector<char> const hidden = hidden_faces(refined, warnings);
+    out.mesh.holes.clear();
+    for (std::uint32_t f = 0; f < hidden.size(); ++f)
+        if (hidden[f]) out.mesh.holes.push_back(f);
     return out;
 }
 

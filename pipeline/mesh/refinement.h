@@ -7,6 +7,7 @@
 #include "pipeline/mesh/patch_place.h"
 #include "pipeline/mesh/subdivision_tables.h"
 
+#include <functional>
 #include <memory>
 
 namespace tessemu {
@@ -20,6 +21,9 @@ struct RefinedStep {
 /// \param first  of the mesh's vertices in the vertex buffer
 using RefinementStep = RefinedStep (*)(Topology const&, std::uint32_t first);
 
+/// Told while steps are taken: work done, of all.
+using RefinementProgress = std::function<void(std::size_t, std::size_t)>;
+
 class RefinedMesh {
 public:
     static constexpr int kMaxSteps = 8;
@@ -27,7 +31,8 @@ public:
     /// \param steps  0 to kMaxSteps
     /// \cost         memory for the last two meshes and all tables, four times larger with each step
     /// Throws LimitError for more steps and MeshError for a mesh that is no manifold.
-    RefinedMesh(ControlMesh mesh, int steps, RefinementStep step);
+    RefinedMesh(ControlMesh mesh, int steps, RefinementStep step,
+                RefinementProgress const& progress = {});
     RefinedMesh(RefinedMesh&&) = default;
 
     /// The file's mesh. Cameras and sizes are taken from it, whatever steps a scheme takes: the same

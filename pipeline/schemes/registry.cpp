@@ -3,6 +3,7 @@
 
 #include "pipeline/mesh/join.h"
 #include "pipeline/mesh/manifold.h"
+#include "pipeline/mesh/sort_by_valence.h"
 
 #include <algorithm>
 #include <charconv>
@@ -94,24 +95,31 @@ Parameters::Value parsed(SchemeInfo const& info, SchemeParameter const& p, std::
 
 } // namespace
 
+SchemeParameter const& sort_parameter()
+{
+    static SchemeParameter const sort{
+        "sort", "order of vertices and faces for the tables", 0, 0, 0, {"none", "valence"}};
+    return sort;
+}
+
 Parameters resolve_parameters(SchemeInfo const& info, ParameterTexts const& given)
 {
     Parameters out;
     std::string known;
+    std::vector<SchemeParameter> all = info.parameters;
+    all.push_back(sort_parameter());
+    for (SchemeParameter const& p : all) known += (known.empty() ? "" : ", ") + p.name;
     for (SchemeParameter const& p : info.parameters) {
-        known += (known.empty() ? "" : ", ") + p.name;
         if (p.words.empty())
             out.set(p.name, p.default_value);
         else
             out.set(p.name, p.words[0]);
     }
     for (auto const& [name, text] : given) {
-        auto const p =
-            std::find_if(info.parameters.begin(), info.parameters.end(),
-                         [&, &n = name](SchemeParameter const& q) { return q.name == n; });
-        if (p == info.parameters.end())
-            throw Error(info.name + " has no parameter '" + name + "'" +
-                        (known.empty() ? "" : "; there is " + known));
+        auto const p = std::find_if(all.begin(), all.end(),
+                                    [&, &n = name](auto const& q) -> bool { return q.name == n; });
+        if (p == all.end())
+            throw Error(info.name + " has no parameter '" + name + "'; there is " + known);
         auto const is_name = [&, &n = name](auto const& other) { return other.first == n; };
         if (std::count_if(given.begin(), given.end(), is_name) > 1)
             throw Error(info.name + ": '" + name + "' is set more than once");
@@ -271,6 +279,19 @@ void warn(SchemeOnMesh& out, BuildOptions const& options, std::vector<std::strin
     }
 }
 
+// Whether to sort; what there is to sort for is tables.
+bool resolve_sort(SchemeInfo const& info, int steps, Parameters& parameters)
+{
+    SchemeParameter const& sort = sort_parameter();
+    bool const is_given = parameters.values().count(sort.name) > 0;
+    if (steps == 0 && is_given)
+        throw Error(info.name + ": " + sort.name + " is '" + parameters.word(sort.name) +
+                    "', and no step of subdivision is taken whose tables it would sort: take one "
+                    "(--subdivide 1), or leave it out");
+    if (steps > 0 && !is_given) parameters.set(sort.name, sort.words[0]);
+    return steps > 0 && parameters.word(sort.name) != sort.words[0];
+}
+
 // What the scheme takes is refined, anything else refused or, unless it must be taken, refined too.
 SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const& options,
                     bool must_be_taken)
@@ -300,10 +321,12 @@ SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const
         sides.polygons += n > 4;
         sides.triangles += n == 3;
     }
-    int const own = steps_of(info.takes, sides, 0);
+    int const own = steps_of(info.takes, sides, 0), steps = own + options.subdivide;
+    bool const sorts = resolve_sort(info, steps, out.parameters);
     if (must_be_taken) refuse(info, facts_of(Topology(mesh)), options.subdivide); // before the work
-    out.mesh = std::make_shared<RefinedMesh const>(std::move(mesh), own + options.subdivide,
-                                                   info.takes.step);
+    if (sorts) mesh = sort_by_valence(mesh, info.takes.step(Topology(mesh), 0).tables);
+    out.mesh = std::make_shared<RefinedMesh const>(std::move(mesh), steps, info.takes.step,
+                                                   options.progress);
     RefinedMesh const& refined = *out.mesh;
     if (sides.polygons && own > 0)
         warn(out, options,
@@ -321,6 +344,16 @@ SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const
 SchemeOnMesh refine_for_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options)
 {
     return refine(scheme.info(), std::move(mesh), options, false);
+}
+
+SchemeOnMesh refine_for_no_scheme(RefinementStep step, ControlMesh mesh,
+                                  BuildOptions const& options)
+{
+    SchemeInfo none;
+    none.name = "subdivide";
+    none.takes.steps_with_polygons = 0;
+    none.takes.step = step;
+    return refine(none, std::move(mesh), options, false);
 }
 
 SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options)

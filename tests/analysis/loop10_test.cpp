@@ -32,7 +32,7 @@ TEST(Gpu, TheCardsOfLoop10HaveTheirMakersNumbers)
         for (auto const& [place, source] : m.sources) EXPECT_GT(source.size(), 20u) << place;
 }
 
-TEST(SubdivisionCost, AddsTheDispatchesOfSubdivisionAndNoOthers)
+TEST(SubdivisionTime, AddsTheDispatchesOfSubdivisionAndNoOthers)
 {
     GpuModel gpu;
     gpu.arithmetic = 100;
@@ -47,7 +47,7 @@ TEST(SubdivisionCost, AddsTheDispatchesOfSubdivisionAndNoOthers)
         c.statistics.stages.push_back(s);
         return c;
     };
-    SubdivisionCost const c = subdivision_cost(
+    SubdivisionTime const c = subdivision_time(
         gpu,
         {command("dispatch", "skinning", 1000), command("dispatch", "face points, step 1", 100),
          command("dispatch", "edge points, step 1", 300), command("draw", "regular quad", 7)});
