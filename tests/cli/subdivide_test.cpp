@@ -10,7 +10,9 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <set>
+#include <sstream>
 
 namespace tessemu {
 namespace {
@@ -181,6 +183,32 @@ TEST(Subdivide, RefusalsNameTheOptionTheValueAndTheLimit)
     EXPECT_EQ(run("draw jug --set sort=valence --size 16x16").status, 2);
     EXPECT_FALSE(test::draw_json("jug --size 16x16")["config"].contains("sort"));
     EXPECT_EQ(test::draw_json("jug --size 16x16 --subdivide 1")["config"]["sort"], "none");
+}
+
+// How many triangles each patch of an export has, by the patch's number.
+std::map<std::string, int> triangles_by_patch(std::string const& model)
+{
+    fs::path const path = scratch() / "patches.obj";
+    EXPECT_EQ(run("export " + model + " --tess 1 -o " + path.string()).status, 0);
+    std::istringstream in(test::read_text(path));
+    std::map<std::string, int> out;
+    std::string line, patch;
+    while (std::getline(in, line)) {
+        if (line.starts_with("g ")) patch = line.substr(2);
+        if (line.starts_with("f ")) ++out[patch];
+    }
+    return out;
+}
+
+TEST(Subdivide, ExportsHaveTheFilesFaceNumbersInWhateverOrder)
+{
+    auto const plain =
+        triangles_by_patch("jug --subdivide 1"); // three quads of a triangle, or four
+    EXPECT_EQ(plain.size(), load_model("jug").mesh.faces());
+    EXPECT_EQ(triangles_by_patch("jug --subdivide 1 --set sort=valence"), plain);
+    fs::path const path = scratch() / "dropped.obj";
+    std::ofstream(path) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 1\nf 1 2 3 4\n";
+    EXPECT_EQ(triangles_by_patch(path.string()), (std::map<std::string, int>{{"patch_1", 2}}));
 }
 
 TEST(Subdivide, SchemesMentionTheSortOnce)
