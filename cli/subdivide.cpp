@@ -103,7 +103,10 @@ void add_subdivide(CommandLine& program)
                      "the tables; valence: those of one valence side by side [none]");
     add_machine(verb, o->shading);
     add_options(verb, o->run);
-    verb.runs([o] { return run(*o); });
+    verb.runs([o, &verb] {
+        if (o->mesh.build.subdivide == 0) verb.needs({"--set"}, "--levels 1 or more");
+        return run(*o);
+    });
 }
 
 } // namespace tessemu

@@ -169,7 +169,7 @@ TEST(Subdivide, RefusalsNameTheOptionTheValueAndTheLimit)
     for (auto const& [arguments, words] : std::vector<std::pair<std::string, std::string>>{
              {"jug --levels 7", "--levels is 7, it must be 0 to 6"},
              {"jug --levels -1", "--levels is -1, it must be 0 to 6"},
-             {"jug --levels 0 --set sort=valence", "no step of subdivision is taken"},
+             {"jug --levels 0 --set sort=valence", "--set needs --levels 1 or more"},
              {"jug --set sort=faces", "sort is 'faces', it must be none or valence"},
              {"jug --set alpha=1", "no parameter 'alpha'; there is sort"},
              {"jug -o refined.stl", ".stl"},
