@@ -74,7 +74,8 @@ int run(SubdivideRequest const& o)
     if (file) write_control_mesh(drawn.mesh, *file, job.placement, progress);
     bar.clear();
     std::string const lost = is_ply ? left_out_of_ply(drawn.mesh) : "";
-    if (!lost.empty()) print_warning(o.output + ": PLY has no tags: " + lost + " are left out");
+    if (!lost.empty())
+        print_warning(o.output + ": positions and faces alone, " + lost + " are left out");
     out.finish(
         [&] {
             return subdivide_report(job.header, drawn.statistics, steps, drawn.mesh, job.placement);
