@@ -74,7 +74,8 @@ int run(SubdivideRequest const& o)
     if (file) write_control_mesh(drawn.mesh, *file, job.placement, progress);
     bar.clear();
     std::string const lost = is_ply ? left_out_of_ply(drawn.mesh) : "";
-    if (!lost.empty()) print_warning(o.output + ": PLY has no tags: " + lost + " are left out");
+    if (!lost.empty())
+        print_warning(o.output + ": positions and faces alone, " + lost + " are left out");
     out.finish(
         [&] {
             return subdivide_report(job.header, drawn.statistics, steps, drawn.mesh, job.placement);
@@ -103,7 +104,10 @@ void add_subdivide(CommandLine& program)
                      "the tables; valence: those of one valence side by side [none]");
     add_machine(verb, o->shading);
     add_options(verb, o->run);
-    verb.runs([o] { return run(*o); });
+    verb.runs([o, &verb] {
+        if (o->mesh.build.subdivide == 0) verb.needs({"--set"}, "--levels 1 or more");
+        return run(*o);
+    });
 }
 
 } // namespace tessemu

@@ -72,6 +72,10 @@ for compiler in g++ clang++; do
                         hash_of)" "$what"
                     check "export $model" "$("$folder/tessemu" export "$model" $options \
                         -o "$folder/mesh.ply" 2>/dev/null | hash_of)" "$what"
+                    for steps in "--levels 3" "--levels 2 --set sort=valence --contraction mixed:7"; do
+                        check "subdivide $model $steps" "$("$folder/tessemu" subdivide "$model" $steps \
+                            -j $threads --lanes $lanes --json - 2>/dev/null | hash_of)" "$what"
+                    done
                 done
             done
         done

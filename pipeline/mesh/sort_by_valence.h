@@ -1,5 +1,5 @@
-// A control mesh in the order of its valences: LOOP10 section 3's remedy for threads of a group that
-// wait for each other.
+// A control mesh in the order of its valences: LOOP10 section 3's remedy for threads of a group
+// that wait for each other.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

@@ -122,8 +122,8 @@ struct BuildOptions {
     RefinementProgress progress = {};
 };
 
-/// Joins vertices if asked to, makes the mesh a manifold, sorts and refines it as options and scheme
-/// ask, checks it and builds. Throws MeshError for a mesh that the scheme does not take, or, if
+/// Joins vertices if asked to, makes the mesh a manifold, checks it, sorts and refines it as options
+/// and scheme ask, and builds. Throws MeshError for a mesh that the scheme does not take, or, if
 /// strict, that is no manifold, naming a face of the given mesh; LimitError; Error, also for a sort
 /// that is asked for where no step is taken.
 SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options = {});

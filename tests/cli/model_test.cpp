@@ -302,8 +302,7 @@ TEST(Program, FacesOfAnyKindAreDrawnWithWarningsThatCountThem)
     EXPECT_TRUE(fs::exists(out));
     for (char const* warning :
          {"fin.obj:16: face 5 names a vertex twice in a row and loses the repetition\n",
-          "fin.obj:19: face 8 has fewer than three different vertices, or names one twice, not in "
-          "a "
+          "fin.obj:19: face 8 has fewer than three different vertices, or names one twice, not in a "
           "row: left out\n",
           "fin.obj:11: vertex 11 is in no face: left out\n",
           "fin.obj:1: an edge at vertex 1 has more than two faces",

@@ -10,7 +10,9 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <set>
+#include <sstream>
 
 namespace tessemu {
 namespace {
@@ -158,7 +160,7 @@ TEST(Subdivide, APlyTellsWhatItLacks)
     std::ofstream(model) << tagged_cube(1);
     Result const r = run("subdivide " + model.string() + " -o " + path.string());
     EXPECT_EQ(r.status, 0);
-    EXPECT_NE(r.err.find("PLY has no tags"), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find("positions and faces alone, "), std::string::npos) << r.err;
     EXPECT_EQ(test::read_text(path).substr(0, 4), "ply\n");
 }
 
@@ -167,7 +169,7 @@ TEST(Subdivide, RefusalsNameTheOptionTheValueAndTheLimit)
     for (auto const& [arguments, words] : std::vector<std::pair<std::string, std::string>>{
              {"jug --levels 7", "--levels is 7, it must be 0 to 6"},
              {"jug --levels -1", "--levels is -1, it must be 0 to 6"},
-             {"jug --levels 0 --set sort=valence", "no step of subdivision is taken"},
+             {"jug --levels 0 --set sort=valence", "--set needs --levels 1 or more"},
              {"jug --set sort=faces", "sort is 'faces', it must be none or valence"},
              {"jug --set alpha=1", "no parameter 'alpha'; there is sort"},
              {"jug -o refined.stl", ".stl"},
@@ -181,6 +183,32 @@ TEST(Subdivide, RefusalsNameTheOptionTheValueAndTheLimit)
     EXPECT_EQ(run("draw jug --set sort=valence --size 16x16").status, 2);
     EXPECT_FALSE(test::draw_json("jug --size 16x16")["config"].contains("sort"));
     EXPECT_EQ(test::draw_json("jug --size 16x16 --subdivide 1")["config"]["sort"], "none");
+}
+
+// How many triangles each patch of an export has, by the patch's number.
+std::map<std::string, int> triangles_by_patch(std::string const& model)
+{
+    fs::path const path = scratch() / "patches.obj";
+    EXPECT_EQ(run("export " + model + " --tess 1 -o " + path.string()).status, 0);
+    std::istringstream in(test::read_text(path));
+    std::map<std::string, int> out;
+    std::string line, patch;
+    while (std::getline(in, line)) {
+        if (line.starts_with("g ")) patch = line.substr(2);
+        if (line.starts_with("f ")) ++out[patch];
+    }
+    return out;
+}
+
+TEST(Subdivide, ExportsHaveTheFilesFaceNumbersInWhateverOrder)
+{
+    auto const plain =
+        triangles_by_patch("jug --subdivide 1"); // three quads of a triangle, or four
+    EXPECT_EQ(plain.size(), load_model("jug").mesh.faces());
+    EXPECT_EQ(triangles_by_patch("jug --subdivide 1 --set sort=valence"), plain);
+    fs::path const path = scratch() / "dropped.obj";
+    std::ofstream(path) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 1\nf 1 2 3 4\n";
+    EXPECT_EQ(triangles_by_patch(path.string()), (std::map<std::string, int>{{"patch_1", 2}}));
 }
 
 TEST(Subdivide, SchemesMentionTheSortOnce)

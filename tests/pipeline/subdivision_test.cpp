@@ -262,7 +262,7 @@ TEST(SubdivisionKernels, AgreeWithTheMasksWithinRounding)
             x = refined_points<CatmullClark, Vec>(topology, sharpness, x);
             ControlMesh next = catmull_clark_mesh(topology, sharpness, x);
             RefinedMesh const m(mesh, steps, catmull_clark_step);
-            std::vector<glm::vec3> const drawn = drawn_positions(m, {}, ThreadPool(1));
+            std::vector<glm::vec3> const drawn = drawn_mesh(m, {}, ThreadPool(1)).mesh.positions;
             ASSERT_EQ(drawn.size(), x.size());
             double const blend = 5.0 / 3;
             bound = m.tables().back().blended.target.empty()
@@ -382,10 +382,12 @@ TEST(SubdivisionKernels, RunOnTheMovedMesh)
     EXPECT_EQ(skinning.name, "skinning");
     EXPECT_EQ(skinning.groups[0], (mesh.positions.size() + 63) / 64);
     ControlMesh moved = mesh;
-    moved.positions = drawn_positions(RefinedMesh(mesh, 0, nullptr), s, ThreadPool(1));
+    moved.positions = drawn_mesh(RefinedMesh(mesh, 0, nullptr), s, ThreadPool(1)).mesh.positions;
     EXPECT_NE(moved.positions, mesh.positions);
-    EXPECT_EQ(drawn_positions(refined, s, ThreadPool(1)),
-              drawn_positions(RefinedMesh(moved, 2, catmull_clark_step), {}, ThreadPool(1)));
+    auto const positions = [](RefinedMesh const& m, SurfaceSettings const& settings) {
+        return drawn_mesh(m, settings, ThreadPool(1)).mesh.positions;
+    };
+    EXPECT_EQ(positions(refined, s), positions(RefinedMesh(moved, 2, catmull_clark_step), {}));
 }
 
 } // namespace
