@@ -350,9 +350,8 @@ TEST(Stam, AsThePaperDrawsItPatchesAgreeOnAdaptiveFactors)
         for (ParameterTexts const& choices : all_choices()) {
             SchemeOnMesh const on = stam(load_model(name).mesh, choices);
             WatertightSettings s;
-            s.frame.height = 256;
             s.frame.camera = frame_points(on.mesh->base().positions, {0.5f, 0.4f, 1}, 1);
-            s.frame.adaptive = {AdaptiveFactors::Kind::Pixels, 3};
+            s.frame.adaptive = {AdaptiveFactors::Kind::Pixels, 0.5f};
             auto const verdicts = checked(*on.patches, s);
             EXPECT_EQ(verdicts.at("topology").verdict, Verdict::Pass)
                 << name << ", " << choices[0].second << ", " << choices[1].second;
