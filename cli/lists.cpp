@@ -34,6 +34,8 @@ int list_schemes()
             out += fmt::format("    --set {}={}  {}: {}\n", p.name,
                                p.words.empty() ? fmt::format("{}", p.default_value) : p.words[0],
                                allowed(p), p.meaning);
+        for (auto const& [name, value] : i.watertight_with)
+            out += fmt::format("    shared edges have equal bits with --set {}={}\n", name, value);
     }
     print(out);
     return 0;
