@@ -255,11 +255,11 @@ private:
     {
         std::string out;
         for (auto const& [edge, points] : by_edge)
-            if (!edge.empty())
+            if (!edge.empty() && points[1])
                 out = both(out, counted(points[1], "point", "points") + " of " +
                                     std::to_string(points[0]) + " differ on " + with_article(edge));
         auto const rest = by_edge.find("");
-        if (!out.empty() && rest != by_edge.end())
+        if (!out.empty() && rest != by_edge.end() && rest->second[1])
             out = both(out, counted(rest->second[1], "point", "points") + " of " +
                                 std::to_string(rest->second[0]) +
                                 " differ at corners and on other edges");

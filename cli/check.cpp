@@ -86,6 +86,17 @@ VerdictRow row_of(CheckedVerdict const& v)
     return row;
 }
 
+// Where a scheme can promise what fails.
+std::string closing_hint(SchemeInfo const& info, Parameters const& parameters)
+{
+    for (auto const& [name, value] : info.watertight_with)
+        if (parameters.word(name) != value)
+            return fmt::format("{} as its paper draws it is not watertight: --set {}={} gives "
+                               "shared edges equal bits",
+                               info.name, name, value);
+    return "";
+}
+
 int run(CheckRequest const& o)
 {
     RunOutput out(o.run.json);
@@ -129,7 +140,12 @@ int run(CheckRequest const& o)
     if (picture) write_image(draw_cracks(patches, s, verdicts, threads), *picture);
     out.finish([&] { return check_report(job.header, rows); }, check_table(rows, 3));
     if (!hint.empty() && any_checked(verdicts)) print_warning(hint); // else an error says so
-    if (!all_hold(verdicts)) return 1;
+    if (!all_hold(verdicts)) {
+        std::string const closing =
+            closing_hint(o.surface.model.scheme->info(), job.surface.parameters);
+        if (!closing.empty()) print_warning(closing);
+        return 1;
+    }
     std::string const& model = o.surface.model.model;
     if (std::string const why = why_not_found(o.mistake, verdicts); !why.empty())
         throw Error(model + ": " + why);

@@ -38,6 +38,8 @@ int list_schemes()
         out += fmt::format("{}\n    {} section {}: {}\n    takes {}\n", i.name, i.paper, i.section,
                            i.summary, in_words(i.takes));
         for (SchemeParameter const& p : i.parameters) out += line_of(p);
+        for (auto const& [name, value] : i.watertight_with)
+            out += fmt::format("    shared edges have equal bits with --set {}={}\n", name, value);
     }
     out += "every scheme, where steps of subdivision are taken: its own, or by --subdivide\n" +
            line_of(sort_parameter());

@@ -40,19 +40,25 @@ struct StamProjectionShader {
             Int const function = in.group_thread_id.x + Int(part * kThreads[0]);
             mask_of<T> const here = function < Int(functions);
             when<T>(here, [&] {
-                float3<T> const sum = stencil_row<T>(functions, [&](int k) {
-                    return StencilTerm{here,
-                                       [=, this]() -> T {
-                                           return load<T>(inverse, Int(k * functions) + function);
-                                       },
-                                       [=, this]() -> float3<T> {
-                                           std::int32_t const v =
-                                               load<T>(nets, patch * functions + k) *
-                                               std::int32_t(stride);
-                                           return {load<T>(positions, v), load<T>(positions, v + 1),
-                                                   load<T>(positions, v + 2)};
-                                       }};
-                });
+                // In pieces, whose sums are added: of hundreds of terms one after the other the
+                // last would round in units of all before.
+                float3<T> sum(T(0), T(0), T(0));
+                for (int piece : loop<T>((functions + kPiece - 1) / kPiece)) {
+                    int const first = piece * kPiece;
+                    float3<T> const of_piece =
+                        stencil_row<T>(std::min(kPiece, functions - first), [&](int k) {
+                            int const at = first + k;
+                            return StencilTerm{here,
+                                               [=, this]() -> T {
+                                                   return load<T>(inverse,
+                                                                  Int(at * functions) + function);
+                                               },
+                                               [=, this]() -> float3<T> {
+                                                   return vertex<T>(patch * functions + at);
+                                               }};
+                        });
+                    sum = sum + of_piece;
+                }
                 Int const out = (Int(patch * functions) + function) * Int(3);
                 store(projected, out, sum.x);
                 store(projected, out + Int(1), sum.y);
@@ -62,6 +68,12 @@ struct StamProjectionShader {
     }
 
 private:
+    static constexpr int kPiece = 32;
+    template <class T> float3<T> vertex(std::int32_t in_nets) const
+    {
+        std::int32_t const at = load<T>(nets, in_nets) * std::int32_t(stride);
+        return {load<T>(positions, at), load<T>(positions, at + 1), load<T>(positions, at + 2)};
+    }
     static constexpr int groups_a_patch(int functions)
     {
         return (functions + kThreads[0] - 1) / kThreads[0];

@@ -115,7 +115,10 @@ constexpr TangentFrame<T> stam_quad(StamTables<Weight> const& tables, Point cons
                     at.sub_patch == Int(sub),
                     [&] {
                         StamFrame<T> r{zero, zero, zero};
-                        for (int i : loop<T>(tables.functions)) {
+                        // From the small ones to the constant one, which is the limit position:
+                        // so the sums of the others do not round in its units.
+                        for (int turn : loop<T>(tables.functions)) {
+                            int const i = tables.functions - 1 - turn;
                             int const first = (sub * tables.functions + i) * 16;
                             T q[4], dq[4];
                             unrolled<4>([&](auto c) {

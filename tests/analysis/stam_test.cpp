@@ -11,6 +11,7 @@
 #include "shaders_cpp/records.h"
 #include "tests/support/files.h"
 #include "tests/support/gzip.h"
+#include "tests/support/printed.h"
 #include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -198,7 +199,7 @@ TEST(Stam, IsTheLimitSurfaceOfAnyClosedCage)
                             {"golem, subdivided", load_model("golem").mesh, 1},
                             {"uv sphere", test::uv_sphere(16, 5).mesh},
                             {"cylinder", test::cylinder(7).mesh}};
-    for (int n : {3, 5, 12, 13, 14, 33, 100})
+    for (int n : {3, 5, 12, 13, 14, 33, 200})
         cages.push_back({"trapezohedron " + std::to_string(n), test::trapezohedron(n).mesh});
     for (Cage const& cage : cages) {
         if (summarize(Topology(cage.mesh)).boundary_edges) continue;
@@ -343,6 +344,38 @@ TEST(Stam, AsThePaperDrawsItCheckNamesSpokesAndOuterEdges)
     }
 }
 
+// The page's table, to the digit.
+TEST(Stam, AsThePaperDrawsItAsManyPointsDifferAsThePageSays)
+{
+    TESSEMU_NEEDS_SHARED("models/bigguy.obj");
+    TESSEMU_NEEDS_SHARED("models/monsterfrog.obj");
+    std::size_t cells_compared = 0;
+    for (auto const& cells : test::table_of("docs/stam.md", "| | spokes | outer edges")) {
+        ASSERT_EQ(cells.size(), 4u);
+        std::string const model = cells[0].substr(0, cells[0].find(',')),
+                          verdict = cells[0].substr(model.size() + 2);
+        WatertightSettings s;
+        s.frame.tess_factor = 7.3f;
+        SchemeOnMesh const on =
+            stam(load_model(test::shared("models/" + model + ".obj").string()).mesh);
+        auto const verdicts = checked(*on.patches, s);
+        std::string const& reason =
+            verdicts.at(verdict.substr(0, verdict.size() - 1)).reason; // "positions"
+        char const* const where[] = {"on a spoke", "on an outer edge",
+                                     "at corners and on other edges"};
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::string const& cell = cells[k + 1];
+            std::size_t const of = cell.find(" of ");
+            ASSERT_NE(of, cell.npos);
+            std::string const words =
+                cell.substr(0, of) + " points" + cell.substr(of) + " differ " + where[k];
+            EXPECT_NE(reason.find(words), reason.npos) << words << " is not in: " << reason;
+            ++cells_compared;
+        }
+    }
+    EXPECT_EQ(cells_compared, 12u);
+}
+
 // Adaptive factors agree all the same: they follow the cage's edges.
 TEST(Stam, AsThePaperDrawsItPatchesAgreeOnAdaptiveFactors)
 {
@@ -350,9 +383,8 @@ TEST(Stam, AsThePaperDrawsItPatchesAgreeOnAdaptiveFactors)
         for (ParameterTexts const& choices : all_choices()) {
             SchemeOnMesh const on = stam(load_model(name).mesh, choices);
             WatertightSettings s;
-            s.frame.height = 256;
             s.frame.camera = frame_points(on.mesh->base().positions, {0.5f, 0.4f, 1}, 1);
-            s.frame.adaptive = {AdaptiveFactors::Kind::Pixels, 3};
+            s.frame.adaptive = {AdaptiveFactors::Kind::Pixels, 0.5f};
             auto const verdicts = checked(*on.patches, s);
             EXPECT_EQ(verdicts.at("topology").verdict, Verdict::Pass)
                 << name << ", " << choices[0].second << ", " << choices[1].second;
