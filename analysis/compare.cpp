@@ -360,7 +360,7 @@ EqualParameterErrors equal_parameter_errors(PatchMesh const& patches, FrameSetti
     check_level(patches.mesh(), level);
     LimitSurface const limit(patches.mesh().topology(), level);
     return errors_of(limit, sample_scheme(limit, patches, settings, threads),
-                     diagonal_of(patches.mesh().reference()));
+                     diagonal_of(patches.mesh().base()));
 }
 
 SurfaceComparison compare_with_limit(PatchMesh const& patches, FrameSettings settings, int level,
@@ -370,7 +370,7 @@ SurfaceComparison compare_with_limit(PatchMesh const& patches, FrameSettings set
     check_level(mesh, level);
     LimitSurface const limit(mesh.topology(), level);
     SurfaceComparison out;
-    out.diagonal = diagonal_of(mesh.reference());
+    out.diagonal = diagonal_of(mesh.base());
 
     Triangles smooth;
     smooth.position = limit.positions();

@@ -26,7 +26,7 @@ struct ErrorStatistics {
 /// The scheme's surface with its error against the limit surface's point of equal parameter. Faces
 /// that are not quads are left out.
 struct EqualParameterErrors {
-    double diagonal = 0; ///< of the bounding box of RefinedMesh::reference()
+    double diagonal = 0; ///< of the bounding box of RefinedMesh::base()
     std::vector<glm::dvec3> position, normal;
     std::vector<std::uint32_t> triangles; ///< three a triangle
     std::vector<double> distance;         ///< divided by the diagonal
@@ -55,7 +55,7 @@ double quantile(std::vector<double> const& values, std::vector<double> const& we
                 double share);
 
 struct SurfaceComparison {
-    double diagonal = 0; ///< of the bounding box of RefinedMesh::reference(); divides distances
+    double diagonal = 0; ///< of the bounding box of RefinedMesh::base(); divides distances
     ErrorStatistics to_limit, from_limit; ///< closest point: scheme's samples, limit's samples
     ErrorStatistics normal_to_limit, normal_from_limit; ///< angles there, radians
     ErrorStatistics equal_position, equal_normal;       ///< by equal parameter; quads only

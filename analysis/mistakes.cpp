@@ -82,7 +82,10 @@ enum class EdgePoints {
 // None where the edges of the form's patches are no such cubics.
 std::optional<EdgePoints> edge_points_of(PatchMesh const& patches)
 {
-    if (dynamic_cast<StencilForm const*>(&patches)) return EdgePoints::ByName;
+    if (auto const* const form = dynamic_cast<StencilForm const*>(&patches)) {
+        if (form->has_shared_edges()) return EdgePoints::ByName;
+        return {};
+    }
     if (dynamic_cast<TwoStageForm const*>(&patches)) return EdgePoints::ByCorner;
     return {};
 }
@@ -405,6 +408,9 @@ private:
     void plant_weight()
     {
         form_ = dynamic_cast<StencilForm const*>(&right_);
+        if (form_ && !form_->has_shared_edges())
+            throw Error("the mistake 'weights' is one of shared points, which the scheme's patches "
+                        "do not have");
         if (!form_)
             throw Error("the mistake 'weights' needs weights of one patch, which the stencil form "
                         "has: in other forms a vertex is the same for all its patches");

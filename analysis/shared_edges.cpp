@@ -84,6 +84,21 @@ SharedEdges::Outline SharedEdges::outline_of(TessellatedPatch const& t)
     return out;
 }
 
+std::uint8_t SharedEdges::number_of_word(std::string const& word)
+{
+    auto const at = std::find(words_.begin(), words_.end(), word);
+    if (at != words_.end()) return std::uint8_t(at - words_.begin());
+    words_.push_back(word);
+    return std::uint8_t(words_.size() - 1);
+}
+
+std::string const& SharedEdges::edge_in_words(std::vector<SeenPoint> const& seen) const
+{
+    for (SeenPoint const& s : seen)
+        if (s.edge) return words_[s.edge];
+    return words_[0];
+}
+
 void SharedEdges::add(SurfacePatch const& patch, bool keep_triangles)
 {
     PatchPlace const& place = patch.place();
@@ -117,17 +132,18 @@ void SharedEdges::add(SurfacePatch const& patch, bool keep_triangles)
         float const u = patch.domain().u[i], v = patch.domain().v[i];
         DomainEdges<4, float> const at = domain_edges<float>(n, u, v, 1 - u - v, 1 - u, 1 - v);
         MeshPoint const point = mesh_point(mesh_, place, tess.u[i], tess.v[i]);
-        bool on_edge = false;
+        int edges = 0, last = 0;
         for (int k = 0; k < n; ++k) {
             if (!at.on[k]) continue;
-            on_edge = true;
+            ++edges, last = k;
             // Exact: a multiple of 2^-16.
             lines_[edge[k].line].points.push_back(
                 {edge[k].at(std::uint32_t(at.t[k] * 65536)), number, point});
         }
-        if (!on_edge) continue;
+        if (edges == 0) continue;
         SurfaceVertex const vertex = patch.vertex(i);
-        SeenPoint seen{place.face, number, {}, 1};
+        SeenPoint seen{place.face, number, {}, 1, 0};
+        if (edges == 1) seen.edge = number_of_word(patch.kind().edges[std::size_t(last)]);
         for (int c = 0; c < 3; ++c) {
             auto const bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
             seen.bits[SeenPoint::kPosition + std::size_t(c)] = bits(vertex.smooth[c]);
@@ -144,9 +160,10 @@ glm::vec3 SharedEdges::record(MeshPoint const& point, SeenPoint const& seen)
     std::vector<SeenPoint>& all = points_[point];
     auto const same = std::find_if(all.begin(), all.end(),
                                    [&](SeenPoint const& s) { return s.bits == seen.bits; });
-    if (same != all.end())
+    if (same != all.end()) {
         ++same->patches;
-    else
+        if (!same->edge) same->edge = seen.edge;
+    } else
         all.push_back(seen);
     return all.front().displaced();
 }

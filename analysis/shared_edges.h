@@ -18,6 +18,7 @@ struct SeenPoint {
     std::uint32_t face = 0, patch = 0;      ///< of the first patch
     std::array<std::uint32_t, 9> bits = {}; ///< smooth position, normal, displaced position
     int patches = 1;                        ///< that have the point on their outline
+    std::uint8_t edge = 0;                  ///< see SharedEdges::edge_in_words
 
     glm::vec3 displaced() const;
 };
@@ -50,6 +51,9 @@ public:
         std::vector<OnLine> points;
     };
     std::map<MeshLine, Line> const& lines() const { return lines_; }
+    /// What the patches call the edge that has the point inside (PatchKind::edges); empty where none
+    /// has a word for it, and at corners.
+    std::string const& edge_in_words(std::vector<SeenPoint> const& seen) const;
     std::uint32_t face_of_patch(std::uint32_t patch) const { return face_of_patch_[patch]; }
     /// Pieces of lines that one patch alone has, and that several have.
     std::size_t open_edges() const { return count_pieces(1, 1); }
@@ -81,6 +85,7 @@ private:
     std::size_t count_pieces(std::size_t least, std::size_t most) const;
     void add(SurfacePatch const& patch, bool keep_triangles);
     void extend(glm::vec3 position);
+    std::uint8_t number_of_word(std::string const& word);
     /// Gives the point as the first patch has it.
     glm::vec3 record(MeshPoint const& point, SeenPoint const& seen);
 
@@ -90,6 +95,7 @@ private:
     std::map<MeshLine, Line> lines_;
     Extent extent_;
     std::vector<std::uint32_t> face_of_patch_;
+    std::vector<std::string> words_{""};
     std::map<std::vector<std::uint32_t>, Outline> outlines_; // by a pattern's indices
     RayMesh rays_;
     std::vector<std::uint32_t> face_of_triangle_, face_of_target_;

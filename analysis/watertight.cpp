@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
+#include <map>
 
 namespace tessemu {
 
@@ -39,9 +40,14 @@ std::string hexadecimal(std::uint32_t bits)
     return text;
 }
 
+std::string with_article(std::string const& noun)
+{
+    return (std::string_view("aeiou").find(noun[0]) < 5 ? "an " : "a ") + noun;
+}
+
 // Where a site lies: its patches and its point.
 void set_place(CrackSite& site, ControlMesh const& mesh, MeshPoint const& at, std::uint32_t face,
-               std::uint32_t other)
+               std::uint32_t other, std::string const& edge = "")
 {
     MeshPoint const p = as_in_file(mesh, at);
     site.face[0] = mesh.file_face(face);
@@ -50,7 +56,9 @@ void set_place(CrackSite& site, ControlMesh const& mesh, MeshPoint const& at, st
         site.vertex[0] = p.a, site.vertex[1] = p.kind == MeshPoint::Kind::Edge ? p.b : p.a;
     site.t = p.kind == MeshPoint::Kind::Edge ? p.t >> 9 : 0;
     site.text = "patches of faces " + std::to_string(site.face[0] + 1) + " and " +
-                std::to_string(site.face[1] + 1) + ", " + in_words(p);
+                std::to_string(site.face[1] + 1) + ", " + in_words(p) +
+                (edge.empty() ? "" : ", on " + with_article(edge));
+    site.edge = edge;
 }
 
 class Checker {
@@ -191,6 +199,7 @@ private:
     {
         CheckedVerdict v{name, Verdict::Pass, not_compared(), 0, 0, {}};
         std::size_t undefined = 0;
+        std::map<std::string, std::array<std::uint64_t, 2>> by_edge; // checked, failures
         for (MeshPoint const* p : order_) {
             std::vector<SeenPoint> const& seen = surface_.points().at(*p);
             int patches = 0;
@@ -204,9 +213,13 @@ private:
                 continue;
             }
             ++v.checked;
+            std::string const& edge = surface_.edge_in_words(seen);
+            auto& of_edge = by_edge[edge];
+            ++of_edge[0];
             if (!defined) {
+                ++of_edge[1];
                 CrackSite site;
-                set_place(site, mesh_, *p, seen.front().face, seen.back().face);
+                set_place(site, mesh_, *p, seen.front().face, seen.back().face, edge);
                 site.text += ": it is not finite";
                 add(v, site);
                 continue;
@@ -215,8 +228,9 @@ private:
                 std::size_t c = first;
                 while (c < first + 3 && seen[i].bits[c] == seen[0].bits[c]) ++c;
                 if (c == first + 3) continue;
+                ++of_edge[1];
                 CrackSite site;
-                set_place(site, mesh_, *p, seen[0].face, seen[i].face);
+                set_place(site, mesh_, *p, seen[0].face, seen[i].face, edge);
                 site.component = int(c - first);
                 site.bits[0] = seen[0].bits[c], site.bits[1] = seen[i].bits[c];
                 site.ulp = ulp_distance(site.bits[0], site.bits[1]);
@@ -232,7 +246,24 @@ private:
             v.reason =
                 both(v.reason, counted(undefined, "point has a normal", "points have a normal") +
                                    " of length 0, or none, in all patches: left out");
+        if (v.failures) v.reason = both(v.reason, in_words(by_edge));
         return settled(std::move(v), undefined ? "" : nothing_shared());
+    }
+
+    // How many points differ on which edges, where the scheme has words for some.
+    static std::string in_words(std::map<std::string, std::array<std::uint64_t, 2>> const& by_edge)
+    {
+        std::string out;
+        for (auto const& [edge, points] : by_edge)
+            if (!edge.empty())
+                out = both(out, counted(points[1], "point", "points") + " of " +
+                                    std::to_string(points[0]) + " differ on " + with_article(edge));
+        auto const rest = by_edge.find("");
+        if (!out.empty() && rest != by_edge.end())
+            out = both(out, counted(rest->second[1], "point", "points") + " of " +
+                                std::to_string(rest->second[0]) +
+                                " differ at corners and on other edges");
+        return out;
     }
 
     CheckedVerdict displaced() const

@@ -37,6 +37,7 @@ struct CrackSite {
     int pixel[2] = {-1, -1};          ///< of a coverage failure
     int hits = 0;                     ///< front hits less back hits
     glm::vec3 place{0};               ///< object space, where it is known
+    std::string edge;                 ///< in the scheme's words, see PatchKind; empty: none
     std::string text;                 ///< the same in words
 };
 

@@ -45,7 +45,8 @@ PlantedMistake mistake_of(CheckRequest const& o, RefinedMesh const& mesh)
             out.face = f;
             return out;
         }
-    std::uint32_t const last = base.file_face(std::uint32_t(base.faces() - 1)) + 1;
+    std::uint32_t last = 0; // of all that there are, which may be in any order
+    for (std::uint32_t f = 0; f < base.faces(); ++f) last = std::max(last, base.file_face(f) + 1);
     throw Error(fmt::format(
         "--break-face is {}, it must be 1 to {}{}: the mesh has {} faces", *o.mistaken_face, last,
         last == base.faces() ? "" : " and a face that was not left out", base.faces()));
@@ -80,6 +81,7 @@ VerdictRow row_of(CheckedVerdict const& v)
                              {site.bits[0], site.bits[1]},
                              site.ulp,
                              {site.pixel[0], site.pixel[1]},
+                             site.edge,
                              site.text});
     return row;
 }

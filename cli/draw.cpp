@@ -101,11 +101,10 @@ std::vector<double> as_doubles(glm::dvec3 v)
 }
 
 // The mesh that the scheme draws, in the frame's pose.
-void draw_cage(ControlMesh mesh, FrameSettings const& f, ThreadPool const& threads, Frame& frame)
+void draw_cage(RefinedMesh const& refined, FrameSettings const& f, ThreadPool const& threads,
+               Frame& frame)
 {
-    if (f.pose)
-        for (std::size_t v = 0; v < mesh.positions.size(); ++v)
-            mesh.positions[v] = f.pose->posed(v, mesh.positions[v]);
+    ControlMesh const mesh = drawn_mesh(refined, f, threads).mesh;
     draw_colored_mesh(control_mesh_picture(Topology(mesh)), f, 0.45f, threads, frame);
 }
 
@@ -197,7 +196,7 @@ int run(DrawRequest const& o)
     for (std::size_t i = 0; i < job.poses.size(); ++i) {
         f.pose = job.poses[i].pose;
         if (cage)
-            draw_cage(job.surface.mesh->mesh(), f, threads, frame);
+            draw_cage(*job.surface.mesh, f, threads, frame);
         else
             draw_frame(job.patches(), f, threads, frame, [&](std::size_t n, std::size_t all) {
                 bar(i * all + n, job.poses.size() * all);

@@ -27,7 +27,7 @@ int run(ExportRequest const& o)
     keep_inputs(out, o.surface);
     Job job = prepare(o.surface, "export");
     job.header.config.emplace_back("weld", o.weld);
-    MeshWriter writer(file, o.weld, job.placement);
+    MeshWriter writer(file, o.weld, job.placement, job.surface.mesh->base().file_faces);
     ThreadPool const threads(o.run.threads);
     ProgressBar bar;
     Stopwatch const clock;

@@ -32,11 +32,7 @@ int run(InfoRequest const& o)
     out.keep(o.model.model);
     Model const model = open_model(o.model.model);
     SchemeInfo const info = o.model.scheme->info();
-    ReportHeader header{"info",
-                        config_of(o.model, resolve_parameters(info, o.model.build.set)),
-                        {{model.name, model.sha256}},
-                        model.warnings,
-                        {}};
+    Parameters parameters = resolve_parameters(info, o.model.build.set);
     std::vector<std::string> more;
     auto const tell = [&](std::string const& warning) {
         more.push_back(warning);
@@ -47,10 +43,12 @@ int run(InfoRequest const& o)
     try {
         surface = build(model, o.model, build_scheme, tell);
         patches = surface.patches->patch_counts();
+        parameters = surface.parameters;
     } catch (FormatError const& e) {
         // A mesh that the scheme refuses still has figures: the refusal becomes a warning.
         ModelRequest as_it_is = o.model;
         as_it_is.build.subdivide = 0;
+        as_it_is.build.set.clear();
         surface = build(model, as_it_is, refine_for_scheme, {});
         tell(info.name + " cannot draw this mesh: " + e.what());
     }
@@ -58,6 +56,8 @@ int run(InfoRequest const& o)
     std::size_t const unused = unused_vertices(model.mesh, surface.mesh->base());
     summary.vertices += unused - summary.unused_vertices;
     summary.unused_vertices = unused;
+    ReportHeader header{
+        "info", config_of(o.model, parameters), {{model.name, model.sha256}}, model.warnings, {}};
     header.warnings.insert(header.warnings.end(), more.begin(), more.end());
     header.warnings = without_folder(std::move(header.warnings), model.lines.file);
     out.finish([&] { return info_report(header, summary, patches); }, info_table(summary, patches));

@@ -71,16 +71,17 @@ Config config_of(ModelRequest const& o, Parameters const& parameters)
     SchemeInfo const info = o.scheme->info();
     Config out{{"scheme", info.name}, {"subdivide", std::int64_t(o.build.subdivide)}};
     if (o.build.join) out.emplace_back("join", *o.build.join);
-    for (SchemeParameter const& p : info.parameters)
+    auto const add = [&](SchemeParameter const& p) {
         std::visit([&](auto const& value) { out.emplace_back(p.name, value); },
                    parameters.values().at(p.name));
+    };
+    for (SchemeParameter const& p : info.parameters) add(p);
+    if (parameters.values().count(sort_parameter().name)) add(sort_parameter());
     return out;
 }
 
-namespace {
-
-Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
-         MakeSurface& make)
+Job open_job(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
+             MakeSurface& make)
 {
     Job job;
     job.frame.machine = shading.machine();
@@ -100,9 +101,10 @@ Job open(ModelRequest const& o, ShadingRequest const& shading, std::string const
     auto const& more = job.surface.warnings;
     job.header.warnings.insert(job.header.warnings.end(), more.begin(), more.end());
     job.header.warnings = without_folder(std::move(job.header.warnings), job.path);
-    job.header.config = config_of(o, job.surface.parameters);
     return job;
 }
+
+namespace {
 
 void add_config(Config& c, ShadingRequest const& o)
 {
@@ -123,7 +125,7 @@ std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o, J
     using Kind = DisplaceRequest::Heights::Kind;
     auto const& [kind, path] = o.displace.heights;
     if (kind == Kind::None) return {};
-    float const diagonal = diagonal_of(mesh.reference());
+    float const diagonal = diagonal_of(mesh.base());
     float const scale = o.displace.scale ? float(job.placement.length_from_file(*o.displace.scale))
                                          : 0.01f * diagonal;
     if (!std::isfinite(scale))
@@ -166,7 +168,7 @@ std::vector<FramePose> make_poses(AnimateRequest const& o, ControlMesh const& me
 // All that the frames will show, about.
 std::vector<glm::vec3> points_to_show(Job const& job, AnimateRequest const& animate)
 {
-    ControlMesh const& mesh = job.surface.mesh->reference();
+    ControlMesh const& mesh = job.surface.mesh->base();
     std::vector<glm::vec3> points;
     for (FramePose const& f : make_poses(animate, mesh))
         for (std::size_t v = 0; v < mesh.positions.size(); ++v)
@@ -215,7 +217,8 @@ void keep_inputs(RunOutput const& out, SurfaceRequest const& o)
 
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb)
 {
-    Job job = open(o, shading, verb, build_scheme);
+    Job job = open_job(o, shading, verb, build_scheme);
+    job.header.config = config_of(o, job.surface.parameters);
     add_config(job.header.config, shading);
     return job;
 }
@@ -223,7 +226,7 @@ Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string co
 Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
 {
     check_request(o);
-    Job job = open(o.model, o.shading, verb, make);
+    Job job = open_job(o.model, o.shading, verb, make);
     FrameSettings& f = job.frame;
     f.partitioning = o.partitioning;
     f.tess_factor = float(o.tess);
@@ -237,7 +240,7 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     DisplaceRequest::Heights const& heights = o.displace.heights;
     if (heights.kind == DisplaceRequest::Heights::Kind::Image)
         h.inputs.emplace_back(name_of(heights), sha256_of(read_file(heights.image)));
-    Config& c = h.config;
+    Config& c = h.config = config_of(o.model, job.surface.parameters);
     c.emplace_back("tess", o.tess);
     c.emplace_back("partitioning", std::string(name_of(o.partitioning)));
     add_config(c, o.shading);

@@ -69,8 +69,12 @@ using MakeSurface = SchemeOnMesh(Scheme const&, ControlMesh, BuildOptions const&
 /// where it is known.
 SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make = build_scheme,
                    WarningSink const& warn = print_warning);
-/// "scheme", "subdivide", "join" where it is asked for, and each parameter by its name.
+/// "scheme", "subdivide", "join" where it is asked for, and each parameter by its name, "sort"
+/// where there is something to sort.
 Config config_of(ModelRequest const& o, Parameters const& parameters);
+/// The model, the machine, and a header without a configuration.
+Job open_job(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
+             MakeSurface& make);
 /// The model and its settings for shading.
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb);
 /// No result may replace the model or the height map.

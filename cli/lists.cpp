@@ -23,6 +23,13 @@ std::string allowed(SchemeParameter const& p)
     return high ? fmt::format("{} or below", p.max) : "any number";
 }
 
+std::string line_of(SchemeParameter const& p)
+{
+    return fmt::format("    --set {}={}  {}: {}\n", p.name,
+                       p.words.empty() ? fmt::format("{}", p.default_value) : p.words[0],
+                       allowed(p), p.meaning);
+}
+
 int list_schemes()
 {
     std::string out;
@@ -30,11 +37,10 @@ int list_schemes()
         SchemeInfo const i = scheme->info();
         out += fmt::format("{}\n    {} section {}: {}\n    takes {}\n", i.name, i.paper, i.section,
                            i.summary, in_words(i.takes));
-        for (SchemeParameter const& p : i.parameters)
-            out += fmt::format("    --set {}={}  {}: {}\n", p.name,
-                               p.words.empty() ? fmt::format("{}", p.default_value) : p.words[0],
-                               allowed(p), p.meaning);
+        for (SchemeParameter const& p : i.parameters) out += line_of(p);
     }
+    out += "every scheme, where steps of subdivision are taken: its own, or by --subdivide\n" +
+           line_of(sort_parameter());
     print(out);
     return 0;
 }

@@ -231,17 +231,22 @@ VertexCacheModel parse_vertex_cache(std::string const& text, std::string const&)
 
 void add_options(Verb& verb, ModelRequest& o)
 {
-    verb.required("MODEL", o.model, plain,
-                  "OBJ file, - for standard input, or built-in cage, see 'tessemu models'");
+    add_mesh_options(verb, o,
+                     "NAME=VALUE: a parameter of the scheme, or sort=valence, the order of the "
+                     "mesh that steps of subdivision run on; again for another one");
     verb.option("--scheme", o.scheme, parse_scheme, "patch scheme, see 'tessemu schemes'",
                 "gregory-stencil");
-    verb.repeated("--set", o.build.set, parse_parameter,
-                  "NAME=VALUE: a parameter of the scheme; again for another one");
-    verb.option(
-        "--subdivide", o.build.subdivide, whole(0, 6),
-        "steps of Catmull-Clark subdivision of the mesh before the scheme, beyond those that it "
-        "asks for, 0 to 6; nothing counts them",
-        "0");
+    verb.option("--subdivide", o.build.subdivide, whole(0, 6),
+                "steps of Catmull-Clark subdivision of the mesh before the scheme, beyond those "
+                "that it asks for, 0 to 6; they run as compute shaders (LOOP10 3) and are counted",
+                "0");
+}
+
+void add_mesh_options(Verb& verb, ModelRequest& o, std::string const& parameters)
+{
+    verb.required("MODEL", o.model, plain,
+                  "OBJ file, - for standard input, or built-in cage, see 'tessemu models'");
+    verb.repeated("--set", o.build.set, parse_parameter, parameters);
     verb.option("--join", o.build.join, parse_distance,
                 "join vertices that lie within this distance of each other, in the file's own unit "
                 "of length; 0 joins equal positions; the lowest number stays");
@@ -260,6 +265,11 @@ void add_options(Verb& verb, ShadingRequest& o, NormalWords offered)
         about += "; displaced: of the displaced one, moved along its true normals";
     }
     verb.option("--normals", o.normals, one_of(std::move(words)), about, "frozen");
+    add_machine(verb, o);
+}
+
+void add_machine(Verb& verb, ShadingRequest& o)
+{
     verb.option("--contraction", o.products, parse_contraction,
                 "products that feed sums: none, all, mixed:SEED", "none");
     verb.option("--lanes", o.lanes, parse_lanes, "4, 8 or 16; changes no result",

@@ -94,10 +94,14 @@ struct RunRequest {
 };
 
 void add_options(Verb& verb, ModelRequest& o);
+/// MODEL, --set, --join, --strict alone: for no scheme. \param parameters  what --set may be
+void add_mesh_options(Verb& verb, ModelRequest& o, std::string const& parameters);
 /// What a verb offers of --normals.
 enum class NormalWords { Smooth, AndDisplaced };
 void add_options(Verb& verb, ShadingRequest& o, NormalWords words = NormalWords::Smooth);
-/// With the two above.
+/// --contraction, --lanes alone
+void add_machine(Verb& verb, ShadingRequest& o);
+/// With the model's and the shading's.
 void add_options(Verb& verb, SurfaceRequest& o, NormalWords words = NormalWords::Smooth);
 void add_options(Verb& verb, PictureRequest& o);
 void add_options(Verb& verb, RunRequest& o);

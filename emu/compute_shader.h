@@ -103,17 +103,21 @@ private:
 /// buffer[i] per lane, as memory is now.
 template <class T, int N> float3<T> load3(RWVectorBuffer const& b, IntLanes<N> i)
 {
-    detail::count_fetch<T>(b.slot(), i, b.vectors());
-    // Out of range, and so for each of its three floats.
-    Mask<N> const inside = (i >= IntLanes<N>(0)) & (i < IntLanes<N>(std::int32_t(b.vectors())));
-    IntLanes<N> const first = select(inside, i * IntLanes<N>(b.stride()), IntLanes<N>(-3));
-    auto const at = [&](int k) -> T {
-        IntLanes<N> const bits =
-            gather_or_zero<N>(reinterpret_cast<std::int32_t const*>(b.floats().data()),
-                              b.vectors() * std::size_t(b.stride()), first + IntLanes<N>(k));
-        return T(Lanes<N>(typename Lanes<N>::Raw(bits.raw)));
-    };
-    return {at(0), at(1), at(2)};
+    detail::count_fetch<T>(b.slot(), i);
+    auto const vectors = std::int32_t(b.vectors());
+    Mask<N> const inside = (IntLanes<N>(-1) < i) & (i < IntLanes<N>(vectors));
+    Lanes<N> v[3] = {0.0f, 0.0f, 0.0f};
+    if (!any(inside)) return {T(v[0]), T(v[1]), T(v[2])};
+    IntLanes<N> const first = select(inside, i, IntLanes<N>(0)) * IntLanes<N>(b.stride());
+    // Behind the last vector there may be nothing to be read with it.
+    if (b.stride() > 3 || !any(inside & (i == IntLanes<N>(vectors - 1)))) {
+        load_vectors<N>(b.floats().data(), first, v);
+    } else {
+        for (int k = 0; k < 3; ++k) v[k] = gather<N>(b.floats().data(), first + IntLanes<N>(k));
+    }
+    if (!all(inside))
+        for (Lanes<N>& x : v) x = select(inside, x, Lanes<N>(0.0f));
+    return {T(v[0]), T(v[1]), T(v[2])};
 }
 
 namespace detail {
@@ -159,6 +163,12 @@ void store3(RWVectorBuffer const& b, IntLanes<N> i, float3<T> const& value)
         if (FetchSlot* const s = detail::bound_slot(b.slot())) s->written += execution.active_lanes;
     }
     Lanes<N> const v[3] = {lanes_value(value.x), lanes_value(value.y), lanes_value(value.z)};
+    if (execution.active_bits == all_lanes<N>() && detail::is_run(i, b.vectors())) {
+        float* out = b.floats().data() + std::size_t(i.raw[0]) * std::size_t(b.stride());
+        for (int l = 0; l < N; ++l, out += b.stride())
+            for (int k = 0; k < 3; ++k) out[k] = v[k].raw[l];
+        return;
+    }
     for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
         int const l = std::countr_zero(bits);
         if (std::size_t(i.raw[l]) >= b.vectors()) continue;
@@ -233,24 +243,14 @@ public:
         int const threads = size_[0] * size_[1] * size_[2];
         for (int first = 0; first < threads; first += N) {
             begin_group<T>((1u << std::min(N, threads - first)) - 1, phase_);
-            // A number per lane, by way of an array: g++ 12 takes elements written one by one for
-            // uninitialised.
-            auto const lanes = [&](auto const& number) {
-                std::int32_t n[N];
-                for (int l = 0; l < N; ++l) n[l] = number(first + l);
-                IntLanes<N> r;
-                __builtin_memcpy(&r.raw, n, sizeof n);
-                return r;
-            };
-            IntLanes<N> const x = lanes([&](int i) { return i % size_[0]; }),
-                              y = lanes([&](int i) { return i / size_[0] % size_[1]; }),
-                              z = lanes([&](int i) { return i / (size_[0] * size_[1]); });
+            IntLanes<N> const index = IntLanes<N>(first) + IntLanes<N>::iota();
+            auto const [x, y, z] = threads_at(index);
             ComputeInput<T> const in{group_id_,
                                      {x, y, z},
                                      {x + IntLanes<N>(group_id_.x * size_[0]),
                                       y + IntLanes<N>(group_id_.y * size_[1]),
                                       z + IntLanes<N>(group_id_.z * size_[2])},
-                                     lanes([](int i) { return i; })};
+                                     index};
             work(in);
         }
         ++phase_;
@@ -306,6 +306,20 @@ public:
     std::uint64_t shared_out_of_range() const { return out_of_range_; }
 
 private:
+    // The threads of a group by number, x fastest.
+    int3<IntLanes<N>> threads_at(IntLanes<N> index) const
+    {
+        if (size_[1] == 1 && size_[2] == 1) return {index, 0, 0};
+        // By way of arrays: g++ 12 takes elements written one by one for uninitialised.
+        std::int32_t at[3][N];
+        for (int l = 0; l < N; ++l) {
+            int const i = index.raw[l];
+            at[0][l] = i % size_[0];
+            at[1][l] = i / size_[0] % size_[1];
+            at[2][l] = i / (size_[0] * size_[1]);
+        }
+        return {load_lanes<N>(at[0]), load_lanes<N>(at[1]), load_lanes<N>(at[2])};
+    }
     // work(lane, element) for each active lane whose element exists.
     template <class Work> void for_each_stored(IntLanes<N> i, Work const& work)
     {

@@ -59,6 +59,63 @@ IntLanes<N> gather_or_zero(std::int32_t const* memory, std::size_t size, IntLane
     return r;
 }
 
+template <int N> IntLanes<N> load_lanes(std::int32_t const* p)
+{
+    IntLanes<N> r;
+    __builtin_memcpy(&r.raw, p, sizeof r.raw);
+    return r;
+}
+template <int N> void store_lanes(IntLanes<N> v, std::int32_t* p)
+{
+    __builtin_memcpy(p, &v.raw, sizeof v.raw);
+}
+
+namespace detail {
+template <int N> using Floats = typename Raw<N>::f32;
+
+// Four records of four as four columns of four, and back.
+inline void transpose(Floats<4> (&r)[4])
+{
+    Floats<4> const a = __builtin_shufflevector(r[0], r[1], 0, 4, 1, 5),
+                    b = __builtin_shufflevector(r[2], r[3], 0, 4, 1, 5),
+                    c = __builtin_shufflevector(r[0], r[1], 2, 6, 3, 7),
+                    d = __builtin_shufflevector(r[2], r[3], 2, 6, 3, 7);
+    r[0] = __builtin_shufflevector(a, b, 0, 1, 4, 5);
+    r[1] = __builtin_shufflevector(a, b, 2, 3, 6, 7);
+    r[2] = __builtin_shufflevector(c, d, 0, 1, 4, 5);
+    r[3] = __builtin_shufflevector(c, d, 2, 3, 6, 7);
+}
+
+// N lanes from pieces of four; in registers: a whole load of what was stored in pieces waits.
+template <int N> Floats<N> joined(Floats<4> const* p)
+{
+    if constexpr (N == 4) {
+        return p[0];
+    } else if constexpr (N == 8) {
+        return __builtin_shufflevector(p[0], p[1], 0, 1, 2, 3, 4, 5, 6, 7);
+    } else {
+        static_assert(N == 16);
+        return __builtin_shufflevector(joined<8>(p), joined<8>(p + 2), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9,
+                                       10, 11, 12, 13, 14, 15);
+    }
+}
+} // namespace detail
+
+/// Three floats from memory[index[l]] on in each lane l. Four are read.
+template <int N> void load_vectors(float const* memory, IntLanes<N> index, Lanes<N> (&out)[3])
+{
+    std::int32_t at[N];
+    store_lanes<N>(index, at);
+    detail::Floats<4> column[3][N / 4];
+    for (int g = 0; g < N / 4; ++g) {
+        detail::Floats<4> r[4];
+        for (int l = 0; l < 4; ++l) __builtin_memcpy(&r[l], memory + at[4 * g + l], sizeof r[l]);
+        detail::transpose(r);
+        for (int k = 0; k < 3; ++k) column[k][g] = r[k];
+    }
+    for (int k = 0; k < 3; ++k) out[k].raw = detail::joined<N>(column[k]);
+}
+
 /// The lanes whose bit is set, moved to the front in order. What follows them is unspecified.
 template <int N> IntLanes<N> compress(IntLanes<N> v, std::uint32_t bits)
 {
@@ -143,17 +200,6 @@ template <int N> void store_bytes(IntLanes<N> v, std::uint8_t* p)
     typedef std::uint8_t Bytes __attribute__((vector_size(N)));
     Bytes const b = __builtin_convertvector(v.raw, Bytes);
     __builtin_memcpy(p, &b, N);
-}
-
-template <int N> IntLanes<N> load_lanes(std::int32_t const* p)
-{
-    IntLanes<N> r;
-    __builtin_memcpy(&r.raw, p, sizeof r.raw);
-    return r;
-}
-template <int N> void store_lanes(IntLanes<N> v, std::int32_t* p)
-{
-    __builtin_memcpy(p, &v.raw, sizeof v.raw);
 }
 
 template <int N> IntLanes<N> min(IntLanes<N> a, IntLanes<N> b)

@@ -25,6 +25,12 @@ template <int N> struct Raw {
 };
 } // namespace detail
 
+/// A bit for each of N lanes.
+template <int N> constexpr std::uint32_t all_lanes()
+{
+    return N == 32 ? ~0u : (1u << N) - 1;
+}
+
 template <int N> struct Mask {
     using Raw = typename detail::Raw<N>::i32;
     Raw raw; // 0 or -1
@@ -64,7 +70,7 @@ template <int N> struct Mask {
     }
     friend bool all(Mask m)
     {
-        return m.bits() == (N == 32 ? ~0u : (1u << N) - 1);
+        return m.bits() == all_lanes<N>();
     }
 };
 

@@ -42,49 +42,47 @@ inline constexpr int kBufferSlots = 128;
 /// Elements of a resource that were read, shared by all threads of a draw.
 class TouchedElements {
 public:
-    explicit TouchedElements(std::size_t elements) : words_((elements + 63) / 64) {}
+    explicit TouchedElements(std::size_t elements) : touched_(elements) {}
 
-    void mark(std::size_t element) { mark_word(element / 64, std::uint64_t(1) << (element % 64)); }
+    void mark(std::size_t element) { mark(touched_[element]); }
     /// Elements first + i for each set bit i of `bits`.
     void mark_run(std::size_t first, std::uint32_t bits)
     {
-        std::size_t const shift = first % 64;
-        mark_word(first / 64, std::uint64_t(bits) << shift);
-        if (std::uint64_t const over = shift > 32 ? std::uint64_t(bits) >> (64 - shift) : 0)
-            mark_word(first / 64 + 1, over);
+        Mark* const marks = touched_.data() + first;
+        for (; bits; bits &= bits - 1) mark(marks[std::countr_zero(bits)]);
     }
-    /// The elements below `size` of the active lanes; those of a word together.
-    template <int N> void mark_each(IntLanes<N> index, std::size_t size)
+    /// The elements of the lanes in `bits`, those that there are.
+    template <int N> void mark_each(IntLanes<N> index, std::uint32_t bits)
     {
-        std::size_t word = 0;
-        std::uint64_t marks = 0;
-        for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
-            auto const i = std::size_t(index.raw[std::countr_zero(bits)]);
-            if (i >= size) continue;
-            if (i / 64 != word) {
-                if (marks) mark_word(word, marks);
-                word = i / 64, marks = 0;
-            }
-            marks |= std::uint64_t(1) << (i % 64);
-        }
-        if (marks) mark_word(word, marks);
+        std::int32_t i[N];
+        store_lanes<N>(index, i);
+        Mark* const marks = touched_.data(); // which a store of a byte might change, by the rules
+        std::size_t const size = touched_.size();
+        auto const mark_lane = [&](int l) {
+            if (std::size_t(i[l]) < size) mark(marks[i[l]]);
+        };
+        if (bits == all_lanes<N>())
+            for (int l = 0; l < N; ++l) mark_lane(l);
+        else
+            for (; bits; bits &= bits - 1) mark_lane(std::countr_zero(bits));
     }
     std::uint64_t count() const
     {
         std::uint64_t n = 0;
-        for (auto const& w : words_) n += std::uint64_t(std::popcount(w.load()));
+        for (auto const& t : touched_) n += t.load(std::memory_order_relaxed);
         return n;
     }
 
 private:
-    // Most marks are there already: a read is cheap, a write would bounce between cores.
-    void mark_word(std::size_t i, std::uint64_t bits)
+    using Mark = std::atomic<std::uint8_t>;
+    // Most marks are there already: a read is cheap, a write would bounce between cores. A byte for
+    // an element: bits of a word would have to be collected first, or locked one by one.
+    static void mark(Mark& m)
     {
-        if ((words_[i].load(std::memory_order_relaxed) & bits) != bits)
-            words_[i].fetch_or(bits, std::memory_order_relaxed);
+        if (!m.load(std::memory_order_relaxed)) m.store(1, std::memory_order_relaxed);
     }
 
-    std::vector<std::atomic<std::uint64_t>> words_;
+    std::vector<Mark> touched_;
 };
 
 /// One thread's counter of one buffer slot.
@@ -128,8 +126,7 @@ template <int N> bool is_run(IntLanes<N> index, std::size_t size)
            all(index - IntLanes<N>::iota() == IntLanes<N>(index.raw[0]));
 }
 
-template <class T, int N>
-void count_fetch(int slot, IntLanes<N> index, std::size_t size, bool run = false)
+template <class T, int N> void count_fetch(int slot, IntLanes<N> index, bool run = false)
 {
     if constexpr (ScalarTraits<T>::kCounted) {
         execution.features |= kFetches;
@@ -138,7 +135,7 @@ void count_fetch(int slot, IntLanes<N> index, std::size_t size, bool run = false
         s->count += execution.active_lanes;
         if (!s->touched) return;
         if (run) return s->touched->mark_run(std::size_t(index.raw[0]), execution.active_bits);
-        s->touched->mark_each(index, size);
+        s->touched->mark_each(index, execution.active_bits);
     }
 }
 } // namespace detail
@@ -198,7 +195,7 @@ template <class T, class E, int N> auto load(Buffer<E> const& buffer, IntLanes<N
 {
     std::span<E const> const e = buffer.elements();
     bool const run = sizeof(E) == 4 && detail::is_run(i, e.size());
-    detail::count_fetch<T>(buffer.slot(), i, e.size(), run);
+    detail::count_fetch<T>(buffer.slot(), i, run);
     std::conditional_t<std::floating_point<E>, Lanes<N>, IntLanes<N>> r(0);
     if (run) {
         __builtin_memcpy(&r.raw, e.data() + i.raw[0], sizeof r.raw);

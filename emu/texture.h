@@ -161,18 +161,17 @@ float4<T> load(Texture2D const& texture, int_of<T> x, int_of<T> y, int level = 0
         bool const in = i >= 0 && j >= 0 && i < width && j < height;
         return in ? std::int32_t(first) + j * width + i : std::int32_t(-1);
     };
-    auto const count = texture.texels().size() / 4;
     float const* const data = texture.texels().data();
     if constexpr (lanes_of<T> == 1) {
         std::int32_t const i = texel(x, y);
-        detail::count_fetch<T>(texture.slot(), i, count);
+        detail::count_fetch<T>(texture.slot(), i, texture.texels().size() / 4);
         if (i < 0) return {T(0), T(0), T(0), T(0)};
         return load_record<float4<T>>(data + 4 * std::size_t(i));
     } else {
         constexpr int N = lanes_of<T>;
         IntLanes<N> index(0);
         for (int k = 0; k < N; ++k) index.raw[k] = texel(x.raw[k], y.raw[k]);
-        detail::count_fetch<T>(texture.slot(), index, count);
+        detail::count_fetch<T>(texture.slot(), index);
         Lanes<N> c[4] = {0.0f, 0.0f, 0.0f, 0.0f};
         for (int k = 0; k < N; ++k)
             for (int m = 0; m < 4; ++m)

@@ -102,16 +102,19 @@ struct MeshWriter::Impl {
     WaitingRecords<Vertex> vertices;
     WaitingRecords<Triangle> triangles;
     Placement placement;
+    std::vector<std::uint32_t> file_faces;
     std::unordered_map<Bits, std::uint32_t, BitsHash> welded;
     std::vector<std::uint32_t> number; // of the patch's points
 
-    Impl(OutputFile& out_, bool weld_, Placement const& placement_)
+    Impl(OutputFile& out_, bool weld_, Placement const& placement_,
+         std::vector<std::uint32_t> file_faces_)
         : out(out_),
           format(mesh_format(out_)),
           weld(weld_),
           vertices(out_),
           triangles(out_),
-          placement(placement_)
+          placement(placement_),
+          file_faces(std::move(file_faces_))
     {
     }
 
@@ -175,8 +178,9 @@ struct MeshWriter::Impl {
     }
 };
 
-MeshWriter::MeshWriter(OutputFile& out, bool weld, Placement const& placement)
-    : impl_(std::make_unique<Impl>(out, weld, placement))
+MeshWriter::MeshWriter(OutputFile& out, bool weld, Placement const& placement,
+                       std::vector<std::uint32_t> file_faces)
+    : impl_(std::make_unique<Impl>(out, weld, placement, std::move(file_faces)))
 {
 }
 
@@ -187,6 +191,7 @@ void MeshWriter::add(SurfacePatch const& patch)
     Impl& m = *impl_;
     DomainPoints const& points = patch.domain();
     PatchPlace const& place = patch.place();
+    std::uint32_t const face = m.file_faces.empty() ? place.face : m.file_faces[place.face];
     std::size_t const n = patch.points();
     if (m.vertices.count() + n > 0xffffffffu)
         throw WriteError(m.out.path().string() + ": the mesh has more than 4294967295 vertices");
@@ -196,7 +201,7 @@ void MeshWriter::add(SurfacePatch const& patch)
         Vertex out{{v.position.x, v.position.y, v.position.z},
                    {v.normal.x, v.normal.y, v.normal.z},
                    {},
-                   place.face};
+                   face};
         if (m.weld) {
             Bits bits;
             std::memcpy(bits.words.data(), out.position, sizeof out.position);
@@ -215,7 +220,7 @@ void MeshWriter::add(SurfacePatch const& patch)
     auto const& index = patch.triangles();
     for (std::size_t i = 0; i + 2 < index.size(); i += 3) {
         Triangle const t{{m.number[index[i]], m.number[index[i + 1]], m.number[index[i + 2]]},
-                         place.face};
+                         face};
         bool const collapsed = t.v[0] == t.v[1] || t.v[1] == t.v[2] || t.v[2] == t.v[0];
         if (!m.weld || !collapsed) m.triangles.put(t);
     }

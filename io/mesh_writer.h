@@ -31,8 +31,10 @@ public:
     ///              corner that way are left out; patch and (u,v) are those of the first
     /// \param out   is written by finish(); the caller commits
     /// \param placement  of the mesh in its file
+    /// \param file_faces by the mesh's face its number in the file; empty: the same
     /// Throws WriteError for another extension, and as any part of the mesh cannot be stored.
-    MeshWriter(OutputFile& out, bool weld, Placement const& placement = {});
+    MeshWriter(OutputFile& out, bool weld, Placement const& placement = {},
+               std::vector<std::uint32_t> file_faces = {});
     ~MeshWriter();
 
     void add(SurfacePatch const& patch);

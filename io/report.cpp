@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/report.h"
 
+#include "io/control_mesh_writer.h"
 #include "io/result_diff.h"
 #include "io/sha256.h"
 
@@ -283,6 +284,64 @@ std::string export_report(ReportHeader const& header, ListStatistics const& stat
     return finish(std::move(j), header, [&](Sha256& hash) { mesh.add_to_hash(hash); });
 }
 
+std::string subdivide_report(ReportHeader const& header, ListStatistics const& statistics,
+                             std::vector<SubdivisionRow> const& steps, ControlMesh const& mesh,
+                             Placement const& placement)
+{
+    Json j = start(header);
+    j["mesh"] = {{"vertices", mesh.positions.size()}, {"faces", mesh.faces()}};
+    add_statistics(j, statistics.total);
+    add_commands(j, statistics.commands);
+    j["steps"] = Json::array();
+    for (SubdivisionRow const& s : steps) {
+        Json kernels = Json::array();
+        for (KernelRow const& k : s.kernels) {
+            Json loops = Json::array();
+            for (LoopRow const& l : k.loops)
+                loops.push_back({{"threads_in_step", l.threads_in_step},
+                                 {"turns_needed", l.needed},
+                                 {"turns_run", l.run},
+                                 {"lanes_lost", l.lost}});
+            kernels.push_back({{"kernel", k.kernel},
+                               {"threads", k.threads},
+                               {"flops", to_json(k.flops)},
+                               {"flops_loop10", flops_loop10(k.flops)},
+                               {"index_fetches", k.index_fetches},
+                               {"vertex_fetches", k.vertex_fetches},
+                               {"fetched_bytes", k.fetched_bytes},
+                               {"loops", loops}});
+        }
+        j["steps"].push_back({{"faces", s.faces},
+                              {"edges", s.edges},
+                              {"vertices", s.vertices},
+                              {"kernels", kernels}});
+    }
+    return finish(std::move(j), header, [&](Sha256& hash) { add_to_hash(mesh, placement, hash); });
+}
+
+std::string subdivide_table(std::vector<SubdivisionRow> const& steps)
+{
+    if (steps.empty()) return "";
+    std::string out;
+    auto const line = [&](auto const&... column) {
+        out += fmt::format("{:>4} {:<14} {:>10} {:>12} {:>12} {:>12} {:>12} {:>14} {:>7} {:>7}\n",
+                           column...);
+    };
+    line("", "", "", "", "", "index", "vertex", "bytes", "lost at", "lost at");
+    line("step", "kernel", "threads", "add", "mul, div", "fetches", "fetches", "fetched", "32",
+         "64");
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        for (KernelRow const& k : steps[i].kernels) {
+            auto const lost = [&](std::size_t l) {
+                return l < k.loops.size() ? fmt::format("{:.2f} %", 100 * k.loops[l].lost) : "-";
+            };
+            line(i + 1, k.kernel, counted(k.threads), counted(k.flops.add),
+                 counted(flops_loop10(k.flops)), counted(k.index_fetches),
+                 counted(k.vertex_fetches), counted(k.fetched_bytes), lost(0), lost(1));
+        }
+    return out + "\n";
+}
+
 std::string info_report(ReportHeader const& header, MeshSummary const& s,
                         std::vector<PatchCount> const& patches)
 {
@@ -359,6 +418,16 @@ std::string diff_report(ReportHeader const& header, std::vector<ResultValue> con
     return finish(std::move(j), header, [](Sha256&) {});
 }
 
+namespace {
+
+// Equal numbers have the ratio 1, zeros too.
+double ratio_of(PaperRow const& r)
+{
+    return r.ours == r.paper ? 1 : r.ours / r.paper;
+}
+
+} // namespace
+
 std::string paper_report(ReportHeader const& header, std::string const& title,
                          std::vector<PaperRow> const& rows, std::vector<std::string> const& remarks)
 {
@@ -370,7 +439,7 @@ std::string paper_report(ReportHeader const& header, std::string const& title,
                               {"column", r.column},
                               {"paper", r.paper},
                               {"ours", r.ours},
-                              {"ratio", r.ours / r.paper}});
+                              {"ratio", to_json(ratio_of(r))}});
     j["remarks"] = remarks;
     return finish(std::move(j), header, [](Sha256&) {});
 }
@@ -383,7 +452,7 @@ std::string paper_table(std::string const& title, std::vector<PaperRow> const& r
     std::string row;
     for (PaperRow const& r : rows) {
         out += fmt::format("{:<38} {:<46} {:>9.4g} {:>9.4g} {:>6.2f}\n", r.row == row ? "" : r.row,
-                           r.column, r.paper, r.ours, r.ours / r.paper);
+                           r.column, r.paper, r.ours, ratio_of(r));
         row = r.row;
     }
     for (std::string const& remark : remarks) out += "\n" + remark + "\n";
@@ -409,6 +478,7 @@ std::string check_report(ReportHeader const& header, std::vector<VerdictRow> con
                 site["faces"] = {s.face[0] + 1, s.face[1] + 1};
                 site["vertices"] = {s.vertex[0] + 1, s.vertex[1] + 1};
                 site["t"] = s.t / 65536.0;
+                if (!s.edge.empty()) site["edge"] = s.edge;
             }
             if (s.component >= 0) {
                 site["component"] = std::string(1, "xyz"[s.component]);

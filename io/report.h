@@ -56,6 +56,30 @@ std::string sequence_table(std::vector<SequenceFrame> const& frames);
 std::string export_report(ReportHeader const& header, ListStatistics const& statistics,
                           MeshWriter const& mesh);
 
+/// A kernel's loop where so many threads run in step: the turns of all its threads.
+struct LoopRow {
+    int threads_in_step;
+    std::uint64_t needed, run;
+    double lost; ///< the share of lanes that wait
+};
+struct KernelRow {
+    std::string kernel;
+    std::uint64_t threads; ///< with a point to make
+    FlopCount flops;
+    std::uint64_t index_fetches, vertex_fetches, fetched_bytes;
+    std::vector<LoopRow> loops; ///< none: it has no loop
+};
+/// A step of subdivision.
+struct SubdivisionRow {
+    std::uint64_t faces, edges, vertices; ///< of the mesh before it
+    std::vector<KernelRow> kernels;
+};
+/// subdivide: "hash" covers the mesh as add_to_hash() has it.
+std::string subdivide_report(ReportHeader const& header, ListStatistics const& statistics,
+                             std::vector<SubdivisionRow> const& steps, ControlMesh const& mesh,
+                             Placement const& placement);
+std::string subdivide_table(std::vector<SubdivisionRow> const& steps);
+
 /// info: the mesh's figures and its patches under a scheme.
 std::string info_report(ReportHeader const& header, MeshSummary const& summary,
                         std::vector<PatchCount> const& patches);
@@ -93,7 +117,8 @@ struct VerdictSite {
     int component;                       ///< -1: no value differs
     std::uint32_t bits[2];
     std::uint64_t ulp;
-    int pixel[2]; ///< -1: no pixel
+    int pixel[2];     ///< -1: no pixel
+    std::string edge; ///< in the scheme's words; empty: none
     std::string text;
 };
 struct VerdictRow {

@@ -7,7 +7,7 @@ source "$(dirname "$0")/setup.sh"
 install_packages scripts/peer_packages.txt
 cmake --preset release -DTESSEMU_BUILD_BENCH=ON -DTESSEMU_BUILD_PEERS=ON >/dev/null
 cmake --build --preset release --target bench_draw bench_domain_shader bench_tessellator bench_memory \
-    peer_llvmpipe peer_embree peer_opensubdiv >/dev/null
+    bench_subdivision peer_llvmpipe peer_embree peer_opensubdiv peer_opensubdiv_subdivision >/dev/null
 bin=build/release/bench
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
@@ -26,6 +26,8 @@ ours() {
     "$bin/bench_domain_shader" --benchmark_filter='gregory_quad_(un)?counted/' --benchmark_min_time=0.3 2>/dev/null |
         awk '/^gregory_quad/ { split($1, a, "/"); for (i = 2; i <= NF; ++i) if ($i ~ /^Meval/) { split($i, v, "="); print "our", a[1], a[2], 1, rate(v[2]) } }
              function rate(s) { sub("/s", "", s); if (s ~ /k$/) { sub("k", "", s); return s * 1000 } return s + 0 }'
+    "$bin/bench_subdivision" --benchmark_filter=threads:1/ --benchmark_min_time=0.3 2>/dev/null |
+        awk '/^subdivision/ { split($1, a, "[:/]"); print "our subdivision", a[3], a[5], $2 }'
     "$bin/bench_tessellator" --benchmark_min_time=0.3 2>/dev/null |
         awk '{ for (i = 2; i <= NF; ++i) if ($i ~ /^Mpoint/) { split($i, v, "="); sub("/s", "", v[2]); print "our tessellator", $1, 1, v[2] } }'
 }
@@ -37,6 +39,7 @@ for round in $(seq "$rounds"); do
     LP_NUM_THREADS=0 "$bin/peer_llvmpipe" | grep geometry | sed 's/^/llvmpipe0 /' >>"$log"
     "$bin/peer_embree" | sed 's/^/embree /' >>"$log"
     "$bin/peer_opensubdiv" | sed 's/^/opensubdiv /' >>"$log"
+    "$bin/peer_opensubdiv_subdivision" | sed 's/^/opensubdiv /' >>"$log"
     if [ -n "$bound" ]; then
         "build/peers/$bound" ../shared/models/bigguy.obj 9 17,64 | awk '/fly +cached/ { n = $1; sub("N=", "", n); print "bound", n, $4, $7 }' >>"$log"
     fi
@@ -70,6 +73,11 @@ awk '
             row("evaluation counted, N=" f[i] " : uncounted", median("our gregory_quad_counted " f[i] " 1"), median("our gregory_quad_uncounted " f[i] " 1"), "Meval/s", 1)
         }
         row("evaluation, N=17 : OpenSubdiv CpuEvaluator", median("our gregory_quad_uncounted 17 1"), median("opensubdiv evaluation 10"), "Meval/s", 1)
+        for (i = 1; i <= 3; ++i) {
+            row("subdivision to level " i " : OpenSubdiv stencils", median("our subdivision " i " 1"), median("opensubdiv stencils " i), "ms", 0)
+            row("subdivision to level " i " : OpenSubdiv refinement", median("our subdivision " i " 1"), median("opensubdiv refinement " i), "ms", 0)
+            row("subdivision to level " i " : its points alone", median("our subdivision " i " 1"), median("opensubdiv points " i), "ms", 0)
+        }
         row("evaluation, N=17 : Embree rtcInterpolateN", median("our gregory_quad_uncounted 17 1"), median("embree evaluation 10"), "Meval/s", 1)
         for (key in values) if (key ~ /our tessellator/) { split(key, k, " "); printf "%-52s %10.2f %10s Mpoint/s\n", "tessellator " k[3], median(key), "" }
     }' "$log"

@@ -26,6 +26,12 @@ def pictures():
             "-o", str(OUT / f"jug_{view}.png"))
 
 
+def subdivision():
+    for name, steps in (("cage", "0"), ("step1", "1")):
+        run("draw", "jug", "--view", "cage", "--subdivide", steps, "--size", "400x400", "--samples", "4",
+            "-o", str(OUT / ("subdivision_%s.png" % name)))
+
+
 def figures():
     for number in (1, 9, 11):
         run("reproduce", "loop09-figure%d" % number, "--models", "nowhere", "-o", str(OUT / ("figure%d.png" % number)))
@@ -103,6 +109,7 @@ def stages():
 if __name__ == "__main__":
     OUT.mkdir(parents=True, exist_ok=True)
     pictures()
+    subdivision()
     figures()
     cracks()
     patterns()

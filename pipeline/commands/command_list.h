@@ -28,6 +28,9 @@ enum class PatchClass { RegularQuad, IrregularQuad, Triangle, Other };
 struct PatchKind {
     std::string name; ///< "regular quad"
     PatchClass patch_class = PatchClass::Other;
+    /// What the patch's edges are, from corner k to corner k+1, where the paper has words for them:
+    /// "spoke".
+    std::array<std::string, 4> edges = {};
 };
 
 struct Dispatch {

@@ -151,4 +151,23 @@ std::vector<char> hidden_faces(RefinedMesh const& refined, std::vector<std::stri
     return out;
 }
 
+DrawnMesh drawn_mesh(RefinedMesh const& refined, SurfaceSettings const& settings,
+                     ThreadPool const& threads)
+{
+    CommandList list;
+    VertexSource const points = add_vertices(list, refined, settings);
+    DrawnMesh out{refined.mesh(), run_commands(list, threads)};
+    for (std::size_t v = 0; v < out.mesh.positions.size(); ++v) {
+        float const* const p = points.floats.data() + v * std::size_t(points.stride);
+        out.mesh.positions[v] = {p[0], p[1], p[2]};
+    }
+    if (refined.steps() == 0 || out.mesh.boundary != BoundaryRule::None) return out;
+    std::vector<std::string> warnings;
+    std::vector<char> const hidden = hidden_faces(refined, warnings);
+    out.mesh.holes.clear();
+    for (std::uint32_t f = 0; f < hidden.size(); ++f)
+        if (hidden[f]) out.mesh.holes.push_back(f);
+    return out;
+}
+
 } // namespace tessemu

@@ -80,6 +80,16 @@ struct VertexRoom {
 VertexSource add_vertices(CommandList& list, RefinedMesh const& mesh,
                           SurfaceSettings const& settings, VertexRoom const& room = {});
 
+/// The drawn mesh as one of its own.
+struct DrawnMesh {
+    ControlMesh mesh;
+    ListStatistics statistics; ///< of the dispatches that made its positions
+};
+/// With the positions that dispatches make, in the settings' pose. After steps, whose faces may no
+/// longer reach the boundary, those that the file's boundary rule hides are holes.
+DrawnMesh drawn_mesh(RefinedMesh const& mesh, SurfaceSettings const& settings,
+                     ThreadPool const& threads);
+
 /// Appends a dispatch of the poles' normals, where there are poles; PoleNormals reads them.
 ///
 /// \param name       of the dispatch

@@ -23,6 +23,7 @@ struct PatchStencils {
     int control_points = 0; ///< rows that are control points
     int corner_row[4] = {}; ///< first tangent row of each corner
     std::vector<StencilRow> rows;
+    bool dense = false;            ///< zero weights are multiplied too
     std::vector<double> constants; ///< what else a scheme's hull shader knows of the type
 
     void add(std::vector<StencilRow> const& more)

@@ -40,9 +40,10 @@ CommandList StencilForm::commands(SurfaceSettings const& settings, Tables const&
     VertexShader const vertex = vertex_shader(settings, as_it_is);
     for (Group const& g : tables.groups) {
         StencilBuffers const buffers{tables.weights, tables.zero_masks, g.words, g.order, poles};
+        DomainShader const domain = prepared_domain_shader(list, positions, g.kind, settings);
         add_patch_draw(list, mesh(),
                        {kinds_[g.kind], vertices, g.inputs, g.indices, g.patches, vertex,
-                        hull_shader(g.kind, buffers, settings), domain_shader(g.kind, settings)},
+                        hull_shader(g.kind, buffers, settings), domain},
                        settings);
     }
     add_wide_draws(list, settings, tables, positions, poles);
@@ -69,6 +70,7 @@ void StencilForm::add_wide_draws(CommandList& list, SurfaceSettings const& setti
         list.commands.emplace_back(
             Dispatch{"stencils", bind_compute_shader(cs, settings.machine), groups_for(rows, 64)});
         GatheredBuffers const buffers{g.rows, *sums, g.words, g.constants, poles};
+        DomainShader const domain = prepared_domain_shader(list, positions, g.kind, settings);
         add_patch_draw(list, mesh(),
                        {kinds_[g.kind],
                         {*sums, 3, 3},
@@ -77,7 +79,7 @@ void StencilForm::add_wide_draws(CommandList& list, SurfaceSettings const& setti
                         g.patches,
                         vertex,
                         hull_shader(g.kind, buffers, settings),
-                        domain_shader(g.kind, settings)},
+                        domain},
                        settings);
     }
 }
@@ -128,6 +130,7 @@ void StencilForm::make_tables(std::vector<TypeAhead> const& ahead)
     for (std::uint32_t f = 0; f < mesh().mesh().faces(); ++f) {
         if (hidden[f]) continue;
         find_neighbourhood(topology, f, n);
+        arrange(f, n);
         auto const [it, fresh] = type_ids.try_emplace(n.key, std::uint32_t(types_.size()));
         if (fresh) {
             std::size_t const kind = kind_of(f);
@@ -149,6 +152,8 @@ void StencilForm::make_tables(std::vector<TypeAhead> const& ahead)
     for (Patch const& p : patches) {
         Type& t = types_[p.type];
         find_neighbourhood(topology, p.face, n);
+        arrange(p.face, n);
+        added(t.kind, p.face, n);
         if (!t.wide()) {
             add_patch(t, n, p.face);
             continue;
@@ -183,7 +188,7 @@ StencilForm::Table StencilForm::add_table(std::size_t kind, Neighbourhood const&
     for (auto const& row : s.rows) {
         std::uint32_t mask = 0;
         for (std::size_t i = 0; i < row.size(); ++i)
-            if (float(row[i]) != 0) mask |= 1u << i;
+            if (float(row[i]) != 0 || s.dense) mask |= 1u << i;
         tables_.zero_masks.push_back(mask);
     }
     for (double c : s.constants) tables_.weights.push_back(float(c));
@@ -200,8 +205,9 @@ template <class Index> std::vector<Index> ascending(Neighbourhood const& n)
 {
     std::vector<Index> order(n.inputs.size());
     std::iota(order.begin(), order.end(), Index(0));
-    std::sort(order.begin(), order.end(),
-              [&](Index a, Index b) { return n.inputs[a] < n.inputs[b]; });
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+        return std::pair(n.inputs[a], a) < std::pair(n.inputs[b], b);
+    });
     return order;
 }
 

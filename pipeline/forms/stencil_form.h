@@ -77,6 +77,8 @@ public:
     std::vector<PatchCount> patch_counts() const final;
     std::vector<std::string> warnings() const final { return warnings_; }
     std::optional<AnotherWay> another_way() const final { return another_way_; }
+    /// Whether patches are WatertightPatches whose control points begin with p, e+, e-.
+    virtual bool has_shared_edges() const { return true; }
 
 protected:
     StencilForm(std::shared_ptr<RefinedMesh const> mesh, std::vector<PatchKind> kinds)
@@ -97,12 +99,36 @@ protected:
     ///        patches' rows: some 28 times the square of a pole's valence
     void make_tables(std::vector<TypeAhead> const& ahead = {});
 
+    /// What the scheme itself has to say, beside the form.
+    void warn(std::string warning) { warnings_.push_back(std::move(warning)); }
+    void draws_another_way(AnotherWay way) { another_way_ = std::move(way); }
+
     // What a scheme says. Kinds are numbers in the constructor's list.
     virtual std::size_t kind_of(std::uint32_t face) const = 0;
+    /// Turns a face's neighbourhood, or numbers its inputs, as the kind's shaders know them; the
+    /// same for all faces of a connectivity type.
+    virtual void arrange(std::uint32_t, Neighbourhood&) const {}
+    /// Hears of each patch when it is added to the tables, in the order in which its kind is drawn.
+    virtual void added(std::size_t, std::uint32_t, Neighbourhood const&) {}
     virtual PatchStencils stencils(std::size_t kind, Neighbourhood const& patch) const = 0;
     virtual HullShader hull_shader(std::size_t kind, RowBuffers const& buffers,
                                    SurfaceSettings const& settings) const = 0;
     virtual DomainShader domain_shader(std::size_t kind, SurfaceSettings const& settings) const = 0;
+    /// domain_shader() where it reads more than the hull shader's output: appends the dispatches
+    /// that make it to the list, in front of the kind's draw.
+    ///
+    /// \param positions  of the mesh's vertices in the pose that is drawn
+    virtual DomainShader prepared_domain_shader(CommandList&, VertexSource const& /*positions*/,
+                                                std::size_t kind,
+                                                SurfaceSettings const& settings) const
+    {
+        return domain_shader(kind, settings);
+    }
+    /// Bit k: both ends of edge k are the same pole.
+    std::uint32_t collapsed_edges(Neighbourhood const& n) const
+    {
+        return edge_bits(n) >> EdgeBits::kCollapsed;
+    }
 
 private:
     /// In the buffers of all types.
@@ -134,6 +160,15 @@ private:
     std::optional<AnotherWay> another_way_;
 };
 
+/// The rows of patches that are not wide.
+template <int kSides> SummedRows<kSides> summed_rows(StencilBuffers const& b)
+{
+    return {{b.weights, 0, "stencil_weights"},
+            {b.zero_masks, 1, "zero_masks"},
+            {b.patches, 2, "patch_words"},
+            {b.order, 3, "order"}};
+}
+
 /// A hull shader with a StencilHullShader's members on the buffers of a kind.
 ///
 /// \tparam Shader  of Rows
@@ -158,10 +193,7 @@ HullShader stencil_hull_shader(RowBuffers const& buffers, int points,
     }
     StencilBuffers const& b = std::get<StencilBuffers>(buffers);
     Shader<SummedRows<kSides>> hs;
-    hs.rows = {{b.weights, 0, "stencil_weights"},
-               {b.zero_masks, 1, "zero_masks"},
-               {b.patches, 2, "patch_words"},
-               {b.order, 3, "order"}};
+    hs.rows = summed_rows<kSides>(b);
     return bound(hs, b.poles, 4);
 }
 

@@ -64,7 +64,7 @@ struct ControlMesh {
     CreaseMethod crease_method = CreaseMethod::Normal;
     bool smooth_triangles = false; ///< other weights for the edges of triangles
 
-    // What join_vertices and make_manifold have changed: nothing in a mesh as its file has it.
+    // What joins, cuts and sorts have changed: nothing in a mesh as its file has it.
     std::vector<std::uint32_t> file_vertices, file_faces; ///< numbers in the file, from 0
     std::uint32_t cut_edges = 0;                          ///< of the file, no longer shared
     /// Vertices a < b of an edge that two faces run along and do not share, ascending.

@@ -142,7 +142,12 @@ MeshPoint as_in_file(ControlMesh const& mesh, MeshPoint point)
         return point;
     }
     point.a = mesh.file_vertex(point.a);
-    if (point.kind == MeshPoint::Kind::Edge) point.b = mesh.file_vertex(point.b);
+    if (point.kind != MeshPoint::Kind::Edge) return point;
+    point.b = mesh.file_vertex(point.b);
+    if (point.b < point.a) {
+        std::swap(point.a, point.b);
+        point.t = MeshPoint::kOne - point.t;
+    }
     return point;
 }
 

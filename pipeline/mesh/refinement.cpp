@@ -3,11 +3,11 @@
 
 namespace tessemu {
 
-RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step, int own_steps)
+RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step,
+                         RefinementProgress const& progress)
     : base_(std::make_unique<ControlMesh const>(std::move(mesh))),
       base_topology_(std::make_unique<Topology const>(*base_)),
-      steps_(steps),
-      own_steps_(own_steps)
+      steps_(steps)
 {
     static_assert(kMaxSteps <= PatchPlace::kMaxLevel);
     if (steps < 0)
@@ -21,10 +21,19 @@ RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step, int o
         p.sides = std::uint8_t(base_->face(f).size() == 3 ? 3 : 4);
         places_.push_back(p);
     }
-    for (int s = 0; s < steps; ++s) {
+    // A step's work goes with its faces, four times as many as the last one's: half of it before
+    // the topology of what it makes.
+    std::size_t done = 0, work = 1, all = 0;
+    for (int s = 0; s < steps; ++s) all += std::size_t(2) << 2 * s;
+    auto const tell = [&] {
+        done += work;
+        if (progress) progress(done, all);
+    };
+    for (int s = 0; s < steps; ++s, work *= 4) {
         ControlMesh const& coarse = s ? *mesh_ : *base_;
         std::uint32_t const first = s ? tables_.back().first_face_point() : 0;
         RefinedStep refined = step(s ? *topology_ : *base_topology_, first);
+        tell();
         auto fine = std::make_unique<ControlMesh const>(std::move(refined.mesh));
         tables_.push_back(std::move(refined.tables));
         std::vector<PatchPlace> places;
@@ -37,8 +46,7 @@ RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step, int o
         topology_.reset(); // reads mesh_
         mesh_ = std::move(fine);
         topology_ = std::make_unique<Topology const>(*mesh_);
-        if (s + 1 == own_steps && own_steps < steps)
-            reference_ = std::make_unique<ControlMesh const>(*mesh_);
+        tell();
     }
 }
 

@@ -7,6 +7,7 @@
 #include "pipeline/mesh/patch_place.h"
 #include "pipeline/mesh/subdivision_tables.h"
 
+#include <functional>
 #include <memory>
 
 namespace tessemu {
@@ -20,18 +21,22 @@ struct RefinedStep {
 /// \param first  of the mesh's vertices in the vertex buffer
 using RefinementStep = RefinedStep (*)(Topology const&, std::uint32_t first);
 
+/// Told while steps are taken: work done, of all.
+using RefinementProgress = std::function<void(std::size_t, std::size_t)>;
+
 class RefinedMesh {
 public:
     static constexpr int kMaxSteps = 8;
 
-    /// \param steps      0 to kMaxSteps
-    /// \param own_steps  how many of them the scheme needs on any account, up to steps
-    /// \cost         memory for the last two meshes, four times larger with each step
+    /// \param steps  0 to kMaxSteps
+    /// \cost         memory for the last two meshes and all tables, four times larger with each step
     /// Throws LimitError for more steps and MeshError for a mesh that is no manifold.
-    RefinedMesh(ControlMesh mesh, int steps, RefinementStep step, int own_steps = 0);
+    RefinedMesh(ControlMesh mesh, int steps, RefinementStep step,
+                RefinementProgress const& progress = {});
     RefinedMesh(RefinedMesh&&) = default;
 
-    /// The file's mesh.
+    /// The file's mesh. Cameras and sizes are taken from it, whatever steps a scheme takes: the same
+    /// for all of them, so that their pictures and errors compare.
     ControlMesh const& base() const { return *base_; }
     Topology const& base_topology() const { return *base_topology_; }
     /// What is drawn.
@@ -40,12 +45,6 @@ public:
     int steps() const { return steps_; }
     /// By step: what kernels make mesh()'s positions from base()'s with, in one buffer of all.
     std::span<SubdivisionTables const> tables() const { return tables_; }
-    /// The mesh that cameras and sizes are taken from: the file's after the scheme's own steps,
-    /// however often it is subdivided beyond them.
-    ControlMesh const& reference() const
-    {
-        return own_steps_ == 0 ? *base_ : own_steps_ == steps_ ? *mesh_ : *reference_;
-    }
 
     /// A vertex of mesh() as the file's user knows it: "vertex 12", "the middle of face 3"; of new
     /// ones those that may have more than four edges.
@@ -58,9 +57,9 @@ public:
     }
 
 private:
-    std::unique_ptr<ControlMesh const> base_, mesh_, reference_;
+    std::unique_ptr<ControlMesh const> base_, mesh_;
     std::unique_ptr<Topology const> base_topology_, topology_;
-    int steps_, own_steps_;
+    int steps_;
     std::vector<SubdivisionTables> tables_;
     std::vector<PatchPlace> places_; // by face of mesh()
 };

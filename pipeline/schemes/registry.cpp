@@ -3,6 +3,7 @@
 
 #include "pipeline/mesh/join.h"
 #include "pipeline/mesh/manifold.h"
+#include "pipeline/mesh/sort_by_valence.h"
 
 #include <algorithm>
 #include <charconv>
@@ -23,6 +24,7 @@ std::vector<std::unique_ptr<Scheme>> const& schemes()
         { Make make_gregory_two_stage; s.push_back(make_gregory_two_stage()); }
         { Make make_acc; s.push_back(make_acc()); }
         { Make make_pm; s.push_back(make_pm()); }
+        { Make make_stam; s.push_back(make_stam()); }
         { Make make_phong; s.push_back(make_phong()); }
         // clang-format on
         return s;
@@ -55,9 +57,12 @@ std::string in_words(MeshRequirements const& t)
                     : t.quads              ? "quads"
                                            : "triangles";
     auto const after = [](int steps) { return " after " + in_words_of_steps(steps); };
-    if (t.steps)
+    if (t.steps) {
         s += "," + after(t.steps);
-    else if (t.quads && t.steps_with_polygons)
+        int const with_triangles = t.steps_with_triangles.value_or(t.steps);
+        if (t.triangles && with_triangles != t.steps)
+            s += " (" + std::to_string(with_triangles) + " where a face is no quad)";
+    } else if (t.quads && t.steps_with_polygons)
         s += ", larger faces" + after(t.steps_with_polygons);
     if (!t.boundary) s += ", closed meshes only";
     if (t.edges != t.kAnyNumber) s += ", at most " + std::to_string(t.edges) + " edges at a vertex";
@@ -90,24 +95,31 @@ Parameters::Value parsed(SchemeInfo const& info, SchemeParameter const& p, std::
 
 } // namespace
 
+SchemeParameter const& sort_parameter()
+{
+    static SchemeParameter const sort{
+        "sort", "order of vertices and faces for the tables", 0, 0, 0, {"none", "valence"}};
+    return sort;
+}
+
 Parameters resolve_parameters(SchemeInfo const& info, ParameterTexts const& given)
 {
     Parameters out;
     std::string known;
+    std::vector<SchemeParameter> all = info.parameters;
+    all.push_back(sort_parameter());
+    for (SchemeParameter const& p : all) known += (known.empty() ? "" : ", ") + p.name;
     for (SchemeParameter const& p : info.parameters) {
-        known += (known.empty() ? "" : ", ") + p.name;
         if (p.words.empty())
             out.set(p.name, p.default_value);
         else
             out.set(p.name, p.words[0]);
     }
     for (auto const& [name, text] : given) {
-        auto const p =
-            std::find_if(info.parameters.begin(), info.parameters.end(),
-                         [&, &n = name](SchemeParameter const& q) { return q.name == n; });
-        if (p == info.parameters.end())
-            throw Error(info.name + " has no parameter '" + name + "'" +
-                        (known.empty() ? "" : "; there is " + known));
+        auto const p = std::find_if(all.begin(), all.end(),
+                                    [&, &n = name](auto const& q) -> bool { return q.name == n; });
+        if (p == all.end())
+            throw Error(info.name + " has no parameter '" + name + "'; there is " + known);
         auto const is_name = [&, &n = name](auto const& other) { return other.first == n; };
         if (std::count_if(given.begin(), given.end(), is_name) > 1)
             throw Error(info.name + ": '" + name + "' is set more than once");
@@ -161,17 +173,19 @@ MeshFacts facts_of(Topology const& topology)
     return out;
 }
 
-int steps_of(MeshRequirements const& t, bool polygons, int subdivide)
+int steps_of(MeshRequirements const& t, MeshFacts const& m, int subdivide)
 {
-    return subdivide + (polygons ? t.steps_with_polygons : t.steps);
+    return subdivide + (m.polygons    ? t.steps_with_polygons
+                        : m.triangles ? t.steps_with_triangles.value_or(t.steps)
+                                      : t.steps);
 }
 
 bool takes(MeshRequirements const& t, MeshFacts const& m, int subdivide)
 {
     if (m.boundary && !t.boundary) return false;
     if (m.edges > t.edges) return false;
-    if (m.sides > t.edges && steps_of(t, m.polygons > 0, subdivide) > 0) return false;
-    if (steps_of(t, m.polygons > 0, subdivide) > 0) return t.quads; // which it makes of all faces
+    if (m.sides > t.edges && steps_of(t, m, subdivide) > 0) return false;
+    if (steps_of(t, m, subdivide) > 0) return t.quads; // which it makes of all faces
     return !m.polygons && (t.quads || !m.quads) && (t.triangles || !m.triangles);
 }
 
@@ -189,7 +203,7 @@ void refuse(SchemeInfo const& info, MeshFacts const& m, int subdivide)
                                    ", the first is face " + std::to_string(first + 1) + help);
     };
     char const* const good = info.takes.quads ? "quads" : "triangles";
-    if (steps_of(info.takes, m.polygons > 0, subdivide) > 0) {
+    if (steps_of(info.takes, m, subdivide) > 0) {
         if (!info.takes.quads)
             throw MeshError(0, info.name + " draws " + good + " only: a step of subdivision makes" +
                                    " quads of all " + std::to_string(m.faces) +
@@ -265,6 +279,19 @@ void warn(SchemeOnMesh& out, BuildOptions const& options, std::vector<std::strin
     }
 }
 
+// Whether to sort; what there is to sort for is tables.
+bool resolve_sort(SchemeInfo const& info, int steps, Parameters& parameters)
+{
+    SchemeParameter const& sort = sort_parameter();
+    bool const is_given = parameters.values().count(sort.name) > 0;
+    if (steps == 0 && is_given)
+        throw Error(info.name + ": " + sort.name + " is '" + parameters.word(sort.name) +
+                    "', and no step of subdivision is taken whose tables it would sort: take one "
+                    "(--subdivide 1), or leave it out");
+    if (steps > 0 && !is_given) parameters.set(sort.name, sort.words[0]);
+    return steps > 0 && parameters.word(sort.name) != sort.words[0];
+}
+
 // What the scheme takes is refined, anything else refused or, unless it must be taken, refined too.
 SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const& options,
                     bool must_be_taken)
@@ -287,22 +314,28 @@ SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const
         mesh = std::move(manifold.mesh);
         warn(out, options, in_words(manifold.repairs, options.lines));
     }
-    std::size_t polygons = 0, largest = 0;
+    MeshFacts sides;
     for (std::size_t f = 0; f < mesh.faces(); ++f) {
-        largest = std::max(largest, mesh.face(f).size());
-        polygons += mesh.face(f).size() > 4;
+        std::size_t const n = mesh.face(f).size();
+        sides.sides = std::max(sides.sides, std::uint32_t(n));
+        sides.polygons += n > 4;
+        sides.triangles += n == 3;
     }
-    int const own = steps_of(info.takes, polygons > 0, 0);
+    int const own = steps_of(info.takes, sides, 0), steps = own + options.subdivide;
+    bool const sorts = resolve_sort(info, steps, out.parameters);
     if (must_be_taken) refuse(info, facts_of(Topology(mesh)), options.subdivide); // before the work
-    out.mesh = std::make_shared<RefinedMesh const>(std::move(mesh), own + options.subdivide,
-                                                   info.takes.step, own);
+    if (sorts) mesh = sort_by_valence(mesh, info.takes.step(Topology(mesh), 0).tables);
+    out.mesh = std::make_shared<RefinedMesh const>(std::move(mesh), steps, info.takes.step,
+                                                   options.progress);
     RefinedMesh const& refined = *out.mesh;
-    if (polygons && own > 0)
+    if (sides.polygons && own > 0)
         warn(out, options,
-             {std::to_string(polygons) + " faces have more than 4 sides (up to " +
-              std::to_string(largest) + "): one Catmull-Clark step makes " +
-              std::to_string(refined.reference().faces()) + " quads of the mesh's " +
-              std::to_string(refined.base().faces()) + " faces"});
+             {std::to_string(sides.polygons) + " faces have more than 4 sides (up to " +
+              std::to_string(sides.sides) + "): " +
+              (own == 1 ? "one Catmull-Clark step makes "
+                        : std::to_string(own) + " Catmull-Clark steps make ") +
+              std::to_string(refined.base().face_vertices.size() << 2 * (own - 1)) +
+              " quads of the mesh's " + std::to_string(refined.base().faces()) + " faces"});
     return out;
 }
 
@@ -311,6 +344,16 @@ SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const
 SchemeOnMesh refine_for_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options)
 {
     return refine(scheme.info(), std::move(mesh), options, false);
+}
+
+SchemeOnMesh refine_for_no_scheme(RefinementStep step, ControlMesh mesh,
+                                  BuildOptions const& options)
+{
+    SchemeInfo none;
+    none.name = "subdivide";
+    none.takes.steps_with_polygons = 0;
+    none.takes.step = step;
+    return refine(none, std::move(mesh), options, false);
 }
 
 SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options)

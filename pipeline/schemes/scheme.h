@@ -55,6 +55,8 @@ struct MeshRequirements {
     /// Steps of subdivision that the scheme asks for: of a mesh of triangles and quads, and where a
     /// face has more sides.
     int steps = 0, steps_with_polygons = 1;
+    /// And where a face is a triangle; without a value: `steps`.
+    std::optional<int> steps_with_triangles = {};
     RefinementStep step = catmull_clark_step;
 };
 
@@ -65,6 +67,9 @@ struct SchemeInfo {
     std::string summary;
     MeshRequirements takes = {};
     std::vector<SchemeParameter> parameters = {};
+    /// Parameters under which patches that meet give their shared points equal bits, where the
+    /// defaults do not promise it: those of a scheme that draws as its paper does.
+    std::vector<std::pair<std::string, std::string>> watertight_with = {};
 };
 
 class Scheme {
@@ -84,17 +89,20 @@ Scheme const& find_scheme(std::string_view name);
 /// "quads and triangles, closed meshes only; creases are drawn smooth"
 std::string in_words(MeshRequirements const& takes);
 
+/// "sort", which every scheme has where steps of subdivision are taken.
+SchemeParameter const& sort_parameter();
+
 /// NAME, VALUE as a user wrote them.
 using ParameterTexts = std::vector<std::pair<std::string, std::string>>;
-/// Every parameter, those not given at their defaults. Throws Error that names the parameter, the
-/// value and what is allowed.
+/// The scheme's parameters, those not given at their defaults; sort_parameter() where it is given.
+/// Throws Error that names the parameter, the value and what is allowed.
 Parameters resolve_parameters(SchemeInfo const& info, ParameterTexts const& given);
 
 /// A mesh under a scheme: what draws, checks and comparisons start from.
 struct SchemeOnMesh {
     std::shared_ptr<RefinedMesh const> mesh;
     std::unique_ptr<PatchMesh> patches;
-    Parameters parameters;
+    Parameters parameters;             ///< with sort_parameter() where steps are taken
     std::vector<std::string> warnings; ///< what was refined, what could not be honoured
 };
 
@@ -111,14 +119,19 @@ struct BuildOptions {
     FileLines lines = {};
     /// Hears the warnings, those before an error before it is thrown.
     WarningSink warn = {};
+    RefinementProgress progress = {};
 };
 
-/// Joins vertices if asked to, makes the mesh a manifold, refines it as options and scheme ask,
-/// checks it and builds. Throws MeshError for a mesh that the scheme does not take, or, if strict,
-/// that is no manifold, naming a face of the given mesh; LimitError; Error.
+/// Joins vertices if asked to, makes the mesh a manifold, sorts and refines it as options and scheme
+/// ask, checks it and builds. Throws MeshError for a mesh that the scheme does not take, or, if
+/// strict, that is no manifold, naming a face of the given mesh; LimitError; Error, also for a sort
+/// that is asked for where no step is taken.
 SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options = {});
 /// The mesh alone, refined as for the scheme, whether it takes it or not: `patches` is none.
 SchemeOnMesh refine_for_scheme(Scheme const& scheme, ControlMesh mesh,
                                BuildOptions const& options = {});
+/// The mesh alone after options.subdivide steps and no more: the one parameter is sort_parameter().
+SchemeOnMesh refine_for_no_scheme(RefinementStep step, ControlMesh mesh,
+                                  BuildOptions const& options = {});
 
 } // namespace tessemu

@@ -13,6 +13,8 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/geometric.hpp>
+
 #include <algorithm>
 #include <map>
 
@@ -84,6 +86,57 @@ TEST(Compare, HiddenFacesTakeNoPart)
     EXPECT_EQ(c.equal_position.samples, 28u * 81);
     EXPECT_LE(c.from_limit.max, 60 * 0x1p-24);
 }
+
+// LOOP10 4.4: Gregory patches after 0, 1, ... steps. Their corners are limit points, at any step: sums
+// of at most 32 floats, in coordinates below the diagonal, of points that the steps rounded to some
+// units of 2^-24: within 1e-6 by far. Between them they approximate: a step halves a patch, and its
+// error falls faster.
+class GregoryAfterSteps : public testing::TestWithParam<std::string> {};
+
+void expect_convergence(ControlMesh const& mesh)
+{
+    LimitSurface const limit(Topology(mesh), 3);
+    double last = 1;
+    for (int steps = 0; steps <= 3; ++steps) {
+        SchemeOnMesh const on =
+            build_scheme(find_scheme("gregory-stencil"), mesh, {.subdivide = steps});
+        SurfaceComparison const c = compare_with_limit(*on.patches, {}, 2, ThreadPool(2));
+        std::size_t corners = 0;
+        double worst = 0;
+        visit_surface(*on.patches, {}, ThreadPool(1), [&](SurfacePatch const& p) {
+            for (std::size_t i = 0; i < p.points(); ++i) { // tess factor 1: corners alone
+                UnitPoint const at = domain_to_unit(p.place(), p.domain().u[i], p.domain().v[i]);
+                std::uint32_t const v =
+                    limit.vertex(p.place().face, int(at.u * float(limit.grid())),
+                                 int(at.v * float(limit.grid())));
+                worst = std::max(
+                    worst, glm::length(glm::dvec3(p.vertex(i).position) - limit.positions()[v]));
+                ++corners;
+            }
+        });
+        EXPECT_EQ(corners, (mesh.faces() << (2 * steps)) * 4);
+        EXPECT_LE(worst, 1e-6 * c.diagonal) << steps << " steps";
+        EXPECT_LT(c.equal_position.rms, last / 2) << steps << " steps";
+        last = c.equal_position.rms;
+    }
+}
+
+TEST_P(GregoryAfterSteps, ConvergesAndKeepsItsCornersOnTheLimit)
+{
+    expect_convergence(load_model(GetParam()).mesh);
+}
+INSTANTIATE_TEST_SUITE_P(Builtin, GregoryAfterSteps, testing::Values("golem"));
+
+class SharedGregoryAfterSteps : public testing::TestWithParam<std::string> {};
+
+TEST_P(SharedGregoryAfterSteps, ConvergesAndKeepsItsCornersOnTheLimit)
+{
+    std::string const model = "models/" + GetParam() + ".obj";
+    TESSEMU_NEEDS_SHARED(model);
+    expect_convergence(load_model(test::shared(model).string()).mesh);
+}
+INSTANTIATE_TEST_SUITE_P(Shared, SharedGregoryAfterSteps,
+                         testing::Values("bigguy", "two_hole", "chamfer_cube"));
 
 TEST(Compare, ResultsDoNotDependOnThreadsOrMachine)
 {

@@ -2,6 +2,7 @@
 // factor a regular patch is cheaper as a B-spline.
 //
 // SPDX-License-Identifier: Apache-2.0
+#include "analysis/papers/loop10/figure2.h"
 #include "analysis/papers/loop10/figure4.h"
 #include "analysis/papers/loop10/items.h"
 #include "analysis/papers/loop10/table1.h"
@@ -31,7 +32,7 @@ TEST(Gpu, TheCardsOfLoop10HaveTheirMakersNumbers)
         for (auto const& [place, source] : m.sources) EXPECT_GT(source.size(), 20u) << place;
 }
 
-TEST(SubdivisionCost, AddsTheDispatchesOfSubdivisionAndNoOthers)
+TEST(SubdivisionTime, AddsTheDispatchesOfSubdivisionAndNoOthers)
 {
     GpuModel gpu;
     gpu.arithmetic = 100;
@@ -46,7 +47,7 @@ TEST(SubdivisionCost, AddsTheDispatchesOfSubdivisionAndNoOthers)
         c.statistics.stages.push_back(s);
         return c;
     };
-    SubdivisionCost const c = subdivision_cost(
+    SubdivisionTime const c = subdivision_time(
         gpu,
         {command("dispatch", "skinning", 1000), command("dispatch", "face points, step 1", 100),
          command("dispatch", "edge points, step 1", 300), command("draw", "regular quad", 7)});
@@ -54,6 +55,14 @@ TEST(SubdivisionCost, AddsTheDispatchesOfSubdivisionAndNoOthers)
     EXPECT_DOUBLE_EQ(c.seconds, 4);
     EXPECT_EQ(c.bound, "arithmetic");
     EXPECT_EQ(c.bound_name, "edge points, step 1");
+}
+
+TEST(Loop10Figure2, EveryPrintedNumberIsOurs)
+{
+    PaperTable const t = reproduce_loop10_figure2();
+    // 18 new points, 20 offsets and valences, and 16 + 32 + 32 indices.
+    ASSERT_EQ(t.cells.size(), 18u + 20 + 80);
+    for (PaperCell const& c : t.cells) EXPECT_EQ(c.ours, c.paper) << c.row << " " << c.column;
 }
 
 std::vector<ControlMesh> stand_ins()

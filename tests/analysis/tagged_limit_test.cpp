@@ -243,35 +243,6 @@ INSTANTIATE_TEST_SUITE_P(OpenSubdiv, RefinedCage,
                                          std::pair("smooth_triangles", 2)),
                          [](auto const& of) { return of.param.first; });
 
-// Tags of every kind at random: sharpness below, at and above whole steps, and infinite.
-ControlMesh with_random_tags(ControlMesh mesh, std::uint32_t seed)
-{
-    std::mt19937 random(seed);
-    auto const sharpness = [&] {
-        switch (random() % 5) {
-        case 0:
-            return 10.0f;
-        case 1:
-            return float(1 + random() % 3);
-        default:
-            return float(random() % 4096) / 1024;
-        }
-    };
-    Topology const topology(mesh);
-    for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
-        HalfEdge const twin = topology.twin(h);
-        if (twin != Topology::kNone && twin > h && random() % 4 == 0)
-            mesh.creases.push_back(
-                {topology.vertex_of(h), topology.vertex_of(topology.next(h)), sharpness()});
-    }
-    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v)
-        if (random() % 12 == 0) mesh.corners.push_back({v, sharpness()});
-    mesh.boundary = random() % 2 ? BoundaryRule::EdgeOnly : BoundaryRule::EdgeAndCorner;
-    mesh.crease_method = random() % 2 ? CreaseMethod::Chaikin : CreaseMethod::Normal;
-    mesh.smooth_triangles = random() % 2;
-    return mesh;
-}
-
 double reach_of(ControlMesh const& mesh)
 {
     double out = 0;
@@ -291,7 +262,7 @@ TEST(TaggedLimit, DoesNotDependOnTheLevel)
 {
     std::size_t points = 0, normals = 0;
     for (std::uint32_t seed = 1; seed <= 24; ++seed) {
-        ControlMesh const mesh = with_random_tags(test::random_mesh(seed), seed);
+        ControlMesh const mesh = test::with_random_tags(test::random_mesh(seed), seed);
         Topology const topology(mesh);
         Sharpness const sharpness(topology);
         LimitSurface const coarse(topology, 2), fine(topology, 4);
@@ -371,7 +342,7 @@ TEST(TaggedLimit, AFlatSheetHasOneNormalWhateverIsSharp)
     sheet.corners.push_back({12, kInfinitelySharp});
     std::size_t compared = 0;
     for (std::uint32_t seed = 0; seed < 8; ++seed) {
-        ControlMesh const mesh = seed ? with_random_tags(sheet, seed) : sheet;
+        ControlMesh const mesh = seed ? test::with_random_tags(sheet, seed) : sheet;
         Topology const topology(mesh);
         LimitSurface const limit(topology, 3);
         for (std::size_t p = 0; p < limit.positions().size(); ++p, ++compared) {

@@ -30,7 +30,7 @@ public:
     {
     }
     Case(ControlMesh cage, std::string const& scheme)
-        : on_(build_scheme(find_scheme(scheme), std::move(cage)))
+        : on_(test::build_watertight(find_scheme(scheme), std::move(cage)))
     {
         settings.frame.width = settings.frame.height = 256;
         settings.frame.tess_factor = 7.3f;
@@ -38,6 +38,7 @@ public:
         settings.rays = 20000;
     }
     ControlMesh const& mesh() const { return on_.mesh->mesh(); }
+    ControlMesh const& base() const { return on_.mesh->base(); }
     PatchMesh const& patches() const { return mistaken_ ? *mistaken_ : *on_.patches; }
     /// For the settings as they are.
     void plant(PlantedMistake const& mistake)
@@ -91,7 +92,7 @@ TEST(Watertight, EverySchemePassesPlainDisplacedAnimatedAndAdaptive)
             EXPECT_EQ(v.at("raycast").verdict, Verdict::Pass);
         }
         f.displacement = std::make_shared<Displacement>(Displacement::studs(0.2f, 0.02f));
-        f.pose = std::make_shared<Pose>(SpineRig(c.mesh()).sway(0.3));
+        f.pose = std::make_shared<Pose>(SpineRig(c.base()).sway(0.3));
         Verdicts const v = c.check();
         expect_clean(v, name + ", displaced and animated");
         EXPECT_EQ(v.at("displaced").verdict, Verdict::Pass);
@@ -617,7 +618,7 @@ TEST_P(OnModels, GregorySchemesPassUnderAHundredContractions)
         for (glm::vec3 const& p : c.mesh().positions) low = min(low, p), high = max(high, p);
         float const size = glm::length(high - low);
         auto const map = std::make_shared<Displacement>(Displacement::studs(size / 16, size / 100));
-        SpineRig const rig(c.mesh());
+        SpineRig const rig(c.base());
         FrameSettings& f = c.settings.frame;
         for (int seed = 0; seed < seeds; ++seed) { // plain, displaced, animated, adaptive in turn
             f.machine.seed = std::uint64_t(seed);

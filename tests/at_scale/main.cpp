@@ -75,7 +75,7 @@ void check_mesh(ControlMesh const& mesh, std::uint32_t seed, bool joined, Summar
         std::string const scheme = of->info().name;
         SchemeOnMesh m;
         try {
-            m = build_scheme(*of, mesh);
+            m = build_scheme(*of, mesh, {.set = of->info().watertight_with});
         } catch (Error const&) { // quads only, closed only, more than 32 inputs
             ++out.refused[scheme];
             continue;

@@ -29,6 +29,7 @@ std::vector<std::string> const kVerbs{"draw jug --size 16x16",
                                       "reproduce loop09-table1",
                                       "diff a.json b.json",
                                       "info jug",
+                                      "subdivide jug",
                                       "tessellate --factors 1 1 1 1 1 1"};
 // Verbs that write a file by -o.
 std::vector<std::string> const kPictures{"draw jug --size 64x64",

@@ -59,7 +59,7 @@ TEST(Direct3D10, GivesEverySchemesSurfaceBitForBit)
                 s.machine.contraction = contraction;
                 s.machine.seed = 3;
                 if (moved) {
-                    s.pose = std::make_shared<Pose>(SpineRig(m.mesh->mesh()).sway(0.3));
+                    s.pose = std::make_shared<Pose>(SpineRig(m.mesh->base()).sway(0.3));
                     s.displacement =
                         std::make_shared<Displacement>(Displacement::studs(0.2f, 0.05f));
                 }

@@ -22,7 +22,7 @@ SchemeOnMesh on_charts(std::string const& model, Scheme const& scheme)
 {
     ControlMesh mesh = load_model(model).mesh;
     test::add_charts(mesh);
-    return build_scheme(scheme, std::move(mesh));
+    return test::build_watertight(scheme, std::move(mesh));
 }
 
 FrameSettings displaced_by(std::shared_ptr<Displacement const> map)

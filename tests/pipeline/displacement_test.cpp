@@ -18,7 +18,7 @@ void expect_closed_displaced(std::string const& model, std::string const& scheme
     static HeightImage const image = test::noise(2048);
     ControlMesh mesh = load_model(model).mesh;
     test::add_charts(mesh);
-    SchemeOnMesh const m = build_scheme(find_scheme(scheme), std::move(mesh));
+    SchemeOnMesh const m = test::build_watertight(find_scheme(scheme), std::move(mesh));
     std::shared_ptr<Displacement const> const maps[] = {
         std::make_shared<Displacement>(Displacement::studs(0.1f, 0.05f)),
         std::make_shared<Displacement>(m.mesh->base_topology(), image, 0.05f)};

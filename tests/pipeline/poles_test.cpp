@@ -156,7 +156,7 @@ TEST(Poles, NormalsThereAreOfUnitLengthAndTheSameFromAllPatches)
         for (auto const& scheme : schemes()) {
             if (!test::takes(*scheme, c.mesh)) continue;
             SCOPED_TRACE(scheme->info().name + " on a " + c.name);
-            SchemeOnMesh const m = build_scheme(*scheme, c.mesh);
+            SchemeOnMesh const m = test::build_watertight(*scheme, c.mesh);
             for (Machine const& machine : test::contraction_policies(2)) {
                 FrameSettings s;
                 s.tess_factor = 5;

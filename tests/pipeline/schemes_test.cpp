@@ -63,7 +63,7 @@ TEST(SchemeParameters, GivenOnesReplaceTheirDefaultsAlone)
 TEST(SchemeParameters, RefusalsNameTheParameterTheValueAndWhatIsAllowed)
 {
     EXPECT_EQ(refusal({{"glow", "1"}}),
-              "sample has no parameter 'glow'; there is gain, rule, free");
+              "sample has no parameter 'glow'; there is gain, rule, free, sort");
     for (char const* text : {"", "one", "1x", "0x1", "1 ", " 1", "1,5"})
         EXPECT_EQ(refusal({{"gain", text}}),
                   "sample: gain is '" + std::string(text) + "', it must be a number");

@@ -32,7 +32,7 @@ constexpr bool kSlow = false;
 
 SchemeOnMesh load(std::string const& model, std::string const& scheme = "gregory-stencil")
 {
-    return build_scheme(find_scheme(scheme), load_model(model).mesh);
+    return test::build_watertight(find_scheme(scheme), load_model(model).mesh);
 }
 
 void expect_closed(std::string const& model, std::string const& scheme = "gregory-stencil")
@@ -124,7 +124,7 @@ TEST(AdaptiveFactors, PixelsAreTheLengthOfASegmentInThePicture)
 void expect_closed_animated(std::string const& model, std::string const& scheme)
 {
     SchemeOnMesh const m = load(model, scheme);
-    SpineRig const rig(m.mesh->mesh());
+    SpineRig const rig(m.mesh->base());
     auto const studs = std::make_shared<Displacement>(Displacement::studs(0.2f, 0.02f));
     for (Machine const& machine : test::contraction_policies())
         for (double phase : {0.0, 0.2, 0.7}) {

@@ -51,8 +51,8 @@ TEST(WidePatches, SharedPointsHaveEqualBitsUnderEveryContraction)
             if (!test::takes(*scheme, cage.shape.mesh)) continue;
             SCOPED_TRACE(scheme->info().name + " on " + cage.shape.name + " of " +
                          std::to_string(cage.edges));
-            SchemeOnMesh const m = build_scheme(*scheme, cage.shape.mesh);
-            auto const rig = SpineRig(m.mesh->mesh());
+            SchemeOnMesh const m = test::build_watertight(*scheme, cage.shape.mesh);
+            auto const rig = SpineRig(m.mesh->base());
             for (Machine const& machine : test::contraction_policies(4))
                 for (bool const animated : {false, true}) {
                     FrameSettings s;
@@ -69,9 +69,9 @@ TEST(WidePatches, SharedPointsHaveEqualBitsUnderEveryContraction)
                 }
             ++drawn;
         }
-    // Both Gregory forms, ACC where all faces are quads, and where nothing is wide Pm and, of
-    // triangles alone, Phong.
-    EXPECT_EQ(drawn, 2 * 7 + 5 + 1 + 1);
+    // Both Gregory forms and Stam, ACC where all faces are quads, and where nothing is wide Pm and,
+    // of triangles alone, Phong.
+    EXPECT_EQ(drawn, 3 * 7 + 5 + 1 + 1);
 }
 
 TEST(WidePatches, AWarningCountsThem)
@@ -170,7 +170,7 @@ TEST(WidePatches, ALimitThatStaysIsNamed)
         EXPECT_EQ(e.face, 0u);
         EXPECT_STREQ(e.what(), "pm draws vertices of at most 15 edges: vertex 1 of face 1 has 16; "
                                "schemes that draw this mesh: gregory-stencil, gregory-two-stage, "
-                               "acc");
+                               "acc, stam");
     }
     try {
         build_scheme(find_scheme("gregory-stencil"), test::uv_sphere(2049, 3).mesh);

@@ -30,6 +30,12 @@ inline bool takes(Scheme const& scheme, std::string const& model)
     return takes(scheme, load_model(model).mesh);
 }
 
+/// With the parameters under which the scheme promises equal bits on shared edges.
+inline SchemeOnMesh build_watertight(Scheme const& scheme, ControlMesh mesh)
+{
+    return build_scheme(scheme, std::move(mesh), {.set = scheme.info().watertight_with});
+}
+
 /// The built-in cages that a scheme takes, which are quads, triangles or both, open and closed. The
 /// test fails where there is none.
 inline std::vector<std::string> cages_of(Scheme const& scheme)

@@ -174,4 +174,32 @@ ControlMesh prism(int n)
     return m;
 }
 
+ControlMesh with_random_tags(ControlMesh mesh, std::uint32_t seed)
+{
+    std::mt19937 random(seed);
+    auto const sharpness = [&] {
+        switch (random() % 5) {
+        case 0:
+            return 10.0f;
+        case 1:
+            return float(1 + random() % 3);
+        default:
+            return float(random() % 4096) / 1024;
+        }
+    };
+    Topology const topology(mesh);
+    for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
+        HalfEdge const twin = topology.twin(h);
+        if (twin != Topology::kNone && twin > h && random() % 4 == 0)
+            mesh.creases.push_back(
+                {topology.vertex_of(h), topology.vertex_of(topology.next(h)), sharpness()});
+    }
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v)
+        if (random() % 12 == 0) mesh.corners.push_back({v, sharpness()});
+    mesh.boundary = random() % 2 ? BoundaryRule::EdgeOnly : BoundaryRule::EdgeAndCorner;
+    mesh.crease_method = random() % 2 ? CreaseMethod::Chaikin : CreaseMethod::Normal;
+    mesh.smooth_triangles = random() % 2;
+    return mesh;
+}
+
 } // namespace tessemu::test

@@ -15,6 +15,10 @@ ControlMesh random_mesh(std::uint32_t seed);
 /// The mesh stays a manifold without vertices of two faces inside.
 ControlMesh join_faces(ControlMesh const& mesh, std::uint32_t seed);
 
+/// Tags of every kind at random: sharpness below, at and above whole steps, and infinite; any boundary
+/// rule and crease method, triangles smoothed or not.
+ControlMesh with_random_tags(ControlMesh mesh, std::uint32_t seed);
+
 /// A prism over a polygon of n sides: closed, two faces of n sides and n quads; the bottom is face
 /// 0.
 ControlMesh prism(int n);

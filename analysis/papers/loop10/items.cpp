@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/papers/loop10/items.h"
 
+#include "analysis/papers/loop10/figure2.h"
 #include "analysis/papers/loop10/figure4.h"
 #include "analysis/papers/loop10/table1.h"
 
@@ -24,6 +25,13 @@ std::vector<PaperItem> loop10_items()
     std::vector<PaperModel> models;
     for (Loop10Model const& m : kLoop10Models) models.push_back({m.ours, false, true});
     std::vector<PaperItem> items;
+    items.push_back({"loop10-figure2",
+                     "tables of subdivision of the pyramid",
+                     false,
+                     {},
+                     {},
+                     0,
+                     [](PaperInput const&, auto&, auto&) { return reproduce_loop10_figure2(); }});
     items.push_back({"loop10-table1",
                      "times of the subdivision step",
                      false,

@@ -8,10 +8,10 @@
 
 namespace tessemu {
 
-SubdivisionCost subdivision_cost(GpuModel const& gpu,
+SubdivisionTime subdivision_time(GpuModel const& gpu,
                                  std::vector<CommandStatistics> const& commands)
 {
-    SubdivisionCost out;
+    SubdivisionTime out;
     double longest = -1;
     for (CommandStatistics const& c : commands) {
         if (c.kind != "dispatch" || c.name.find(" points, step ") == std::string::npos) continue;
@@ -34,7 +34,7 @@ constexpr double kPrinted[2][4] = {{0.30, 0.31, 0.31, 0.35}, {0.33, 0.36, 0.37, 
 struct Cell {
     std::string row;
     double seconds; // the paper's
-    SubdivisionCost cost;
+    SubdivisionTime cost;
 };
 
 double predicted(SubdivisionFit const& fit, Cell const& c)
@@ -78,7 +78,7 @@ SubdivisionTable reproduce_loop10_table1(std::vector<ControlMesh> const& meshes,
         for (std::size_t g = 0; g < gpus.size(); ++g)
             cells.push_back(
                 {fmt::format("{}{}, {}", model.paper, model.own ? "" : " (stand-in)", gpus[g].name),
-                 kPrinted[g][m] * 1e-3, subdivision_cost(gpus[g], counts.commands)});
+                 kPrinted[g][m] * 1e-3, subdivision_time(gpus[g], counts.commands)});
         if (progress) progress(m + 1, meshes.size());
     }
     SubdivisionTable out;

@@ -15,14 +15,14 @@
 namespace tessemu {
 
 /// Subdivision's dispatches of a frame.
-struct SubdivisionCost {
+struct SubdivisionTime {
     std::uint64_t dispatches = 0;
     double seconds = 0;     ///< counted, without what a dispatch costs whatever it does
     std::string bound;      ///< of the dispatch that takes longest
     std::string bound_name; ///< "edge points, step 1"
 };
 /// \param commands  of a frame; those of subdivision are told by their names
-SubdivisionCost subdivision_cost(GpuModel const& gpu,
+SubdivisionTime subdivision_time(GpuModel const& gpu,
                                  std::vector<CommandStatistics> const& commands);
 
 struct SubdivisionFit {
