@@ -274,6 +274,50 @@ TEST(Program, SubdividesTheMeshBeforeAnyScheme)
         EXPECT_EQ(a["config"][name], b["config"][name]) << name;
 }
 
+TEST(Program, InfoCountsTypesOfCornerValencesWhereTablesAreByType)
+{
+    Json const info = Json::parse(run("info golem --subdivide 1 --json -").out);
+    for (Json const& kind : info["patches"]) {
+        int patches = 0;
+        for (Json const& type : kind["valence_types"]) {
+            patches += type["patches"].get<int>();
+            int regular = 0;
+            for (int n : type["valences"]) regular += n == 4;
+            EXPECT_GE(regular, 3) << type;
+        }
+        EXPECT_EQ(patches, kind["patches"]) << kind["kind"]; // closed quads: all have a type
+    }
+    std::string const text = run("info golem --subdivide 1").out;
+    EXPECT_NE(text.find("of LOOP10's 449, "), std::string::npos) << text;
+    Json const other = Json::parse(run("info golem --scheme pm --json -").out);
+    EXPECT_FALSE(other["patches"][0].contains("valence_types"));
+}
+
+TEST(Program, TheValenceViewPrintsTheColorsThatOccur)
+{
+    Result const r = run("draw golem --subdivide 1 --view valence --size 32x32");
+    EXPECT_EQ(r.status, 0) << r.err;
+    EXPECT_EQ(r.out.find("regular     grey          128 patches\n"
+                         "valence 3   green          72 patches\n"
+                         "valence 5   red            80 patches\n\n"),
+              0u)
+        << r.out;
+    Result const refused = run("draw golem --view valence --direct3d 10 --size 32x32");
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.err.find("valence"), std::string::npos) << refused.err;
+}
+
+TEST(Program, MatricesMadeAheadChangeNothingThatIsDrawnOrCounted)
+{
+    Json const a = draw_json("golem --subdivide 1 --size 64x64 --tess 3"),
+               b = draw_json("golem --subdivide 1 --size 64x64 --tess 3 --set matrices=ahead");
+    EXPECT_EQ(a["config"]["matrices"], "demand");
+    EXPECT_EQ(b["config"]["matrices"], "ahead");
+    EXPECT_EQ(a["counters"], b["counters"]);
+    EXPECT_EQ(a["stages"], b["stages"]);
+    EXPECT_EQ(a["commands"], b["commands"]);
+}
+
 TEST(Program, MeshErrorsNameTheLineOfTheFilesFace)
 {
     fs::path const cage = scratch() / "open.obj"; // face 2 is inside, the others touch the boundary
