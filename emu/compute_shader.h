@@ -70,25 +70,25 @@ private:
 };
 
 /// A buffer of vectors of three floats that shaders read and write, each by one fetch of 12 bytes
-/// (D3D11: a raw buffer by Load3 and Store3, which the input assembler may read as well).
+/// (D3D11: a raw buffer by Load3 and Store3, which the input assembler may read as well). Vectors lie
+/// at every fourth float; what lies between them is neither read nor written.
 /// Out-of-range loads give 0, out-of-range stores do nothing (R144).
 class RWVectorBuffer {
 public:
+    static constexpr int kStride = 4; ///< floats from vector to vector
+    static constexpr std::uint32_t kMostVectors = 0x7fffffff / kStride;
+
     RWVectorBuffer() = default;
-    /// \param stride  floats from vector to vector, at least 3. Vectors beyond 2^31 - 1 floats are
-    ///                out of range.
-    RWVectorBuffer(std::span<float> floats, int stride, int slot, std::string name)
+    RWVectorBuffer(std::span<float> floats, int slot, std::string name)
         : floats_(floats),
-          stride_(stride),
           slot_(slot),
           name_(std::move(name))
     {
-        assert(stride >= 3 && slot >= 0 && slot < kBufferSlots);
+        assert(slot >= 0 && slot < kBufferSlots && vectors() <= kMostVectors);
     }
     std::span<float> floats() const { return floats_; }
-    int stride() const { return stride_; }
     int slot() const { return slot_; }
-    std::size_t vectors() const { return floats_.size() / std::size_t(stride_); }
+    std::size_t vectors() const { return floats_.size() / kStride; }
     ResourceInfo info() const
     {
         return {name_, ResourceKind::Buffer, slot_, vectors(), 3 * sizeof(float)};
@@ -96,7 +96,7 @@ public:
 
 private:
     std::span<float> floats_;
-    int stride_ = 3, slot_ = 0;
+    int slot_ = 0;
     std::string name_;
 };
 
@@ -104,19 +104,14 @@ private:
 template <class T, int N> float3<T> load3(RWVectorBuffer const& b, IntLanes<N> i)
 {
     detail::count_fetch<T>(b.slot(), i);
-    auto const vectors = std::int32_t(b.vectors());
-    Mask<N> const inside = (IntLanes<N>(-1) < i) & (i < IntLanes<N>(vectors));
+    Mask<N> const inside = (IntLanes<N>(-1) < i) & (i < IntLanes<N>(std::int32_t(b.vectors())));
     Lanes<N> v[3] = {0.0f, 0.0f, 0.0f};
-    if (!any(inside)) return {T(v[0]), T(v[1]), T(v[2])};
-    IntLanes<N> const first = select(inside, i, IntLanes<N>(0)) * IntLanes<N>(b.stride());
-    // Behind the last vector there may be nothing to be read with it.
-    if (b.stride() > 3 || !any(inside & (i == IntLanes<N>(vectors - 1)))) {
-        load_vectors<N>(b.floats().data(), first, v);
-    } else {
-        for (int k = 0; k < 3; ++k) v[k] = gather<N>(b.floats().data(), first + IntLanes<N>(k));
+    if (any(inside)) {
+        load_vectors<N>(b.floats().data(),
+                        select(inside, i, IntLanes<N>(0)) * IntLanes<N>(b.kStride), v);
+        if (!all(inside))
+            for (Lanes<N>& x : v) x = select(inside, x, Lanes<N>(0.0f));
     }
-    if (!all(inside))
-        for (Lanes<N>& x : v) x = select(inside, x, Lanes<N>(0.0f));
     return {T(v[0]), T(v[1]), T(v[2])};
 }
 
@@ -164,15 +159,15 @@ void store3(RWVectorBuffer const& b, IntLanes<N> i, float3<T> const& value)
     }
     Lanes<N> const v[3] = {lanes_value(value.x), lanes_value(value.y), lanes_value(value.z)};
     if (execution.active_bits == all_lanes<N>() && detail::is_run(i, b.vectors())) {
-        float* out = b.floats().data() + std::size_t(i.raw[0]) * std::size_t(b.stride());
-        for (int l = 0; l < N; ++l, out += b.stride())
+        float* out = b.floats().data() + std::size_t(i.raw[0]) * b.kStride;
+        for (int l = 0; l < N; ++l, out += b.kStride)
             for (int k = 0; k < 3; ++k) out[k] = v[k].raw[l];
         return;
     }
     for (std::uint32_t bits = execution.active_bits; bits; bits &= bits - 1) {
         int const l = std::countr_zero(bits);
         if (std::size_t(i.raw[l]) >= b.vectors()) continue;
-        float* const out = b.floats().data() + std::size_t(i.raw[l]) * std::size_t(b.stride());
+        float* const out = b.floats().data() + std::size_t(i.raw[l]) * b.kStride;
         for (int k = 0; k < 3; ++k) out[k] = v[k].raw[l];
     }
 }

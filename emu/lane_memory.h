@@ -10,8 +10,8 @@
 
 namespace tessemu {
 
-/// memory[index] per lane; all indices are in range.
-template <int N> IntLanes<N> gather(std::int32_t const* memory, IntLanes<N> index)
+/// memory[index] per lane, of 32 bits each; all indices are in range.
+template <int N> IntLanes<N> gather(void const* memory, IntLanes<N> index)
 {
 #if defined(__AVX512F__)
     if constexpr (N == 16)
@@ -20,43 +20,31 @@ template <int N> IntLanes<N> gather(std::int32_t const* memory, IntLanes<N> inde
 #endif
 #if defined(__AVX2__)
     if constexpr (N == 8)
-        return typename IntLanes<N>::Raw(_mm256_i32gather_epi32(memory, __m256i(index.raw), 4));
+        return typename IntLanes<N>::Raw(
+            _mm256_i32gather_epi32(static_cast<int const*>(memory), __m256i(index.raw), 4));
 #endif
-    IntLanes<N> r;
-    for (int i = 0; i < N; ++i) r.raw[i] = memory[index.raw[i]];
-    return r;
+    std::int32_t r[N];
+    for (int i = 0; i < N; ++i)
+        __builtin_memcpy(&r[i], static_cast<char const*>(memory) + 4 * std::ptrdiff_t(index.raw[i]),
+                         4);
+    IntLanes<N> out;
+    __builtin_memcpy(&out.raw, r, sizeof r);
+    return out;
 }
 template <int N> Lanes<N> gather(float const* memory, IntLanes<N> index)
 {
-    IntLanes<N> const r = gather<N>(reinterpret_cast<std::int32_t const*>(memory), index);
+    IntLanes<N> const r = gather<N>(static_cast<void const*>(memory), index);
     return typename Lanes<N>::Raw(r.raw);
 }
 
-/// memory[index] per lane, and 0 where the index is not below `size`.
-template <int N>
-IntLanes<N> gather_or_zero(std::int32_t const* memory, std::size_t size, IntLanes<N> index)
+/// memory[index] per lane, of 32 bits each, and 0 where the index is not below `size`.
+template <int N> IntLanes<N> gather_or_zero(void const* memory, std::size_t size, IntLanes<N> index)
 {
-    auto const n = std::uint32_t(std::min<std::size_t>(size, 0x7fffffff));
-#if defined(__AVX512F__)
-    if constexpr (N == 16) {
-        __m512i const i = __m512i(index.raw);
-        __mmask16 const inside = _mm512_cmplt_epu32_mask(i, _mm512_set1_epi32(int(n)));
-        return typename IntLanes<N>::Raw(
-            _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), inside, i, memory, 4));
-    }
-#endif
-#if defined(__AVX2__)
-    if constexpr (N == 8) {
-        IntLanes<N> const inside = // as signed numbers: n is at most 2^31 - 1
-            typename IntLanes<N>::Raw((index.raw >= 0) & (index.raw < int(n)));
-        return typename IntLanes<N>::Raw(_mm256_mask_i32gather_epi32(
-            _mm256_setzero_si256(), memory, __m256i(index.raw), __m256i(inside.raw), 4));
-    }
-#endif
-    IntLanes<N> r(0);
-    for (int i = 0; i < N; ++i)
-        if (std::uint32_t(index.raw[i]) < n) r.raw[i] = memory[index.raw[i]];
-    return r;
+    if (size == 0) return 0;
+    auto const n = std::int32_t(std::min<std::size_t>(size, 0x7fffffff));
+    Mask<N> const inside = (IntLanes<N>(-1) < index) & (index < IntLanes<N>(n));
+    IntLanes<N> const r = gather<N>(memory, select(inside, index, IntLanes<N>(0)));
+    return select(inside, r, IntLanes<N>(0));
 }
 
 template <int N> IntLanes<N> load_lanes(std::int32_t const* p)

@@ -200,8 +200,7 @@ template <class T, class E, int N> auto load(Buffer<E> const& buffer, IntLanes<N
     if (run) {
         __builtin_memcpy(&r.raw, e.data() + i.raw[0], sizeof r.raw);
     } else if constexpr (sizeof(E) == 4) {
-        IntLanes<N> const bits =
-            gather_or_zero<N>(reinterpret_cast<std::int32_t const*>(e.data()), e.size(), i);
+        IntLanes<N> const bits = gather_or_zero<N>(e.data(), e.size(), i);
         __builtin_memcpy(&r.raw, &bits.raw, sizeof r.raw);
     } else {
         for (int k = 0; k < N; ++k)

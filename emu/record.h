@@ -19,8 +19,8 @@
 
 #include <array>
 #include <tuple>
-#include <typeinfo>
 #include <type_traits>
+#include <typeinfo>
 
 namespace tessemu {
 

@@ -82,7 +82,7 @@ struct SkinningComputeShader {
     SkinBuffers skin;
     Buffer<float> rest;    ///< [vertex][3]
     RWBuffer<float> moved; ///< [vertex][stride]
-    int stride = 4;        ///< of texels, such as RingTextures::positions
+    int stride = 4;
 
     std::vector<ResourceInfo> resources() const
     {

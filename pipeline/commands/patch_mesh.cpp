@@ -34,32 +34,32 @@ SkinBuffers skin_of(Pose const& pose)
 }
 
 VertexSource add_vertices(CommandList& list, RefinedMesh const& refined,
-                          SurfaceSettings const& settings, VertexRoom const& room)
+                          SurfaceSettings const& settings, std::size_t texels)
 {
     ControlMesh const& base = refined.base();
     if (!settings.pose && refined.steps() == 0) return positions_of(base);
-    auto const stride = std::size_t(room.stride);
+    constexpr std::size_t kStride = RWVectorBuffer::kStride;
     std::size_t const vertices = base.positions.size(),
                       first = refined.steps() ? refined.tables().back().first_face_point() : 0,
                       drawn = refined.mesh().positions.size();
     auto const points =
-        std::make_shared<std::vector<float>>((first + std::max(drawn, room.texels)) * stride);
+        std::make_shared<std::vector<float>>((first + std::max(drawn, texels)) * kStride);
     list.memory.push_back(points);
     if (settings.pose) {
         SkinningComputeShader cs;
         cs.skin = skin_of(*settings.pose);
         cs.rest = {positions_of(base).floats, 2, "rest_positions"};
-        cs.moved = {std::span(*points).first(vertices * stride), 3, "moved_positions"};
-        cs.stride = room.stride;
+        cs.moved = {std::span(*points).first(vertices * kStride), 3, "moved_positions"};
+        cs.stride = int(kStride);
         list.commands.emplace_back(Dispatch{"skinning", bind_compute_shader(cs, settings.machine),
                                             groups_for(vertices, 64)});
     } else {
         for (std::size_t v = 0; v < vertices; ++v)
             for (int k = 0; k < 3; ++k)
-                (*points)[v * stride + std::size_t(k)] = base.positions[v][k];
+                (*points)[v * kStride + std::size_t(k)] = base.positions[v][k];
     }
-    add_subdivision(list, refined.tables(), *points, room.stride, settings.machine);
-    return {std::span(*points).subspan(first * stride), 3, room.stride};
+    add_subdivision(list, refined.tables(), *points, settings.machine);
+    return {std::span(*points).subspan(first * kStride), 3, int(kStride)};
 }
 
 std::span<float const> add_pole_normals(CommandList& list, Poles const& poles,

@@ -67,18 +67,15 @@ VertexSource positions_of(ControlMesh const& mesh);
 /// A pose as shaders read it: slots 0 and 1.
 SkinBuffers skin_of(Pose const& pose);
 
-/// Positions of vertices in memory that no draw need share.
-struct VertexRoom {
-    int stride = 3;         ///< floats from vertex to vertex
-    std::size_t texels = 0; ///< at least so many vertices' room
-};
 /// Where dispatches and draws find the drawn mesh's positions. Only the file's vertices are moved
 /// into the settings' pose, by a dispatch; the steps of subdivision, dispatches too, make all others
 /// of them.
 ///
-/// \returns  the control mesh's own memory, without a command, where there is neither
+/// \param texels  at least so many vertices' room
+/// \returns  the control mesh's own memory, without a command, where there is neither; else vertices
+///           of four floats each, texels
 VertexSource add_vertices(CommandList& list, RefinedMesh const& mesh,
-                          SurfaceSettings const& settings, VertexRoom const& room = {});
+                          SurfaceSettings const& settings, std::size_t texels = 0);
 
 /// The drawn mesh as one of its own.
 struct DrawnMesh {

@@ -11,9 +11,9 @@ namespace tessemu {
 /// Appends for each step "face points", "edge points", "vertex points" and, where the mesh's tags
 /// ask for them, "blended points", each with the step's number. The list views tables and points.
 ///
-/// \param points  [vector][stride]: tables.back().buffer_size() vectors, of which the first step's
-///                old vertices are filled before the commands run
+/// \param points  of a RWVectorBuffer: tables.back().buffer_size() vectors, of which the first
+///                step's old vertices are filled before the commands run
 void add_subdivision(CommandList& list, std::span<SubdivisionTables const> tables,
-                     std::span<float> points, int stride, Machine const& machine);
+                     std::span<float> points, Machine const& machine);
 
 } // namespace tessemu

@@ -30,7 +30,7 @@ CommandList StencilForm::commands(SurfaceSettings const& settings, Tables const&
     // The vertex shader poses a mesh that is drawn as it is; what reads it from memory needs it
     // posed before.
     bool const as_it_is = mesh().steps() == 0,
-               reads_memory = !poles_.empty() || !tables.wide.empty();
+               reads_memory = !poles_.empty() || !tables.wide.empty() || reads_positions();
     VertexSource const vertices =
         as_it_is ? positions_of(mesh().base()) : add_vertices(list, mesh(), settings);
     VertexSource const positions =

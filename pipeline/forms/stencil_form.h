@@ -124,6 +124,8 @@ protected:
     {
         return domain_shader(kind, settings);
     }
+    /// Whether prepared_domain_shader() reads the positions.
+    virtual bool reads_positions() const { return false; }
     /// Bit k: both ends of edge k are the same pole.
     std::uint32_t collapsed_edges(Neighbourhood const& n) const
     {

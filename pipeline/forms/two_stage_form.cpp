@@ -97,7 +97,7 @@ CommandList TwoStageForm::commands(SurfaceSettings const& settings) const
     // The texture of a mesh at rest is made once; else dispatches before the draws fill another.
     bool const as_it_is = mesh().steps() == 0 && !settings.pose;
     VertexSource const vertices =
-        add_vertices(list, mesh(), settings, {4, rings_.positions.size() / 4});
+        add_vertices(list, mesh(), settings, rings_.positions.size() / 4);
     std::span<float const> const positions =
         as_it_is ? std::span<float const>(rings_.positions) : vertices.floats;
     std::span<float const> const poles = add_pole_normals(list, poles_, vertices, settings.machine);

@@ -32,10 +32,10 @@ RefinedStep catmull_clark_step(Topology const& topology, std::uint32_t first)
     std::vector<glm::dvec3> const x(topology.mesh().positions.begin(),
                                     topology.mesh().positions.end());
     RefinedStep out;
+    out.tables = catmull_clark_tables(topology, sharpness, first, first > 0); // or refuses
     out.mesh = catmull_clark_mesh(topology, sharpness,
                                   refined_points<CatmullClark, glm::dvec3>(topology, sharpness, x));
     refine_coordinates(topology, out.mesh);
-    out.tables = catmull_clark_tables(topology, sharpness, first, first > 0);
     return out;
 }
 

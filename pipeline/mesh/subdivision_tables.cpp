@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/mesh/subdivision_tables.h"
 
+#include "emu/compute_shader.h"
 #include "pipeline/mesh/catmull_clark.h"
+
+#include <algorithm>
 
 namespace tessemu {
 
@@ -18,19 +21,23 @@ public:
         std::uint32_t point;
         double weight;
     };
-    std::vector<Term> const& terms() const { return terms_; } // by ascending point
+    /// By ascending point, each once.
+    std::vector<Term> terms() const
+    {
+        std::vector<Term> sorted = terms_, out;
+        std::stable_sort(sorted.begin(), sorted.end(),
+                         [](Term const& a, Term const& b) { return a.point < b.point; });
+        for (Term const& t : sorted)
+            if (!out.empty() && out.back().point == t.point)
+                out.back().weight += t.weight;
+            else
+                out.push_back(t);
+        return out;
+    }
 
     Sum& operator+=(Sum const& o)
     {
-        for (Term const& t : o.terms_) {
-            auto const at = std::lower_bound(
-                terms_.begin(), terms_.end(), t.point,
-                [](Term const& mine, std::uint32_t point) { return mine.point < point; });
-            if (at != terms_.end() && at->point == t.point)
-                at->weight += t.weight;
-            else
-                terms_.insert(at, t);
-        }
+        terms_.insert(terms_.end(), o.terms_.begin(), o.terms_.end());
         return *this;
     }
     Sum& operator*=(double s)
@@ -163,8 +170,14 @@ SubdivisionTables catmull_clark_tables(Topology const& topology, Sharpness const
     EdgeNumbers const edges(topology);
     std::uint64_t const all =
         std::uint64_t(first) + 2 * mesh.positions.size() + mesh.faces() + edges.size();
-    constexpr std::uint64_t kMost = 0x7fffffff;
-    if (all > kMost) throw LimitError("points of the vertex buffer of subdivision", all, kMost);
+    if (all > RWVectorBuffer::kMostVectors)
+        throw LimitError("points of the vertex buffer of subdivision", all,
+                         RWVectorBuffer::kMostVectors);
+    constexpr std::uint64_t kMostFaces = 46340; // its square is below 2^31
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v)
+        if (topology.ring(v).size() > kMostFaces)
+            throw LimitError("faces at a vertex, to subdivide it,", topology.ring(v).size(),
+                             kMostFaces);
     SubdivisionTables out;
     out.faces = std::uint32_t(mesh.faces());
     out.edges = std::uint32_t(edges.size());

@@ -52,7 +52,9 @@ struct SubdivisionTables {
 /// \param first      of the old vertices in the buffer: 0, or an earlier step's first_face_point()
 /// \param only_quads leaves face_offset_valence out: all faces are quads
 /// \cost  linear in the corners of faces, and in the terms of blended points
-/// Throws LimitError for a buffer of 2^31 vectors and more.
+/// Throws LimitError for a buffer of more vectors than RWVectorBuffer::kMostVectors, which keeps all
+/// tables' entries below 2^31 too, and for a vertex of more than 46,340 faces, whose number the
+/// vertex kernel squares in 32 bits.
 SubdivisionTables catmull_clark_tables(Topology const& topology, Sharpness const& sharpness,
                                        std::uint32_t first, bool only_quads);
 

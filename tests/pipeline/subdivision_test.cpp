@@ -313,59 +313,24 @@ TEST(SubdivisionKernels, GiveTheSameBitsAndCountsOnEveryMachineAtEveryLevel)
     }
 }
 
-struct Counts {
-    std::uint64_t add = 0, mul = 0, div = 0, index = 0, vertex = 0;
-    friend bool operator==(Counts const&, Counts const&) = default;
-    friend void PrintTo(Counts const& c, std::ostream* out)
-    {
-        *out << c.add << " add, " << c.mul << " mul, " << c.div << " div, " << c.index << " index, "
-             << c.vertex << " vertex";
-    }
-};
-Counts counts_of(CommandStatistics const& c)
-{
-    StageStatistics const& s = c.statistics.stages.at(0);
-    Counts out{s.flops.add, s.flops.mul, s.flops.div, 0, 0};
-    for (FetchStatistics const& f : s.fetches) {
-        (f.resource == "vertices" ? out.vertex : out.index) += f.count;
-        EXPECT_EQ(f.bytes, f.count * (f.resource == "vertices" ? 12 : 4)) << f.resource;
-        EXPECT_LE(f.unique_bytes, f.bytes);
-        if (f.resource == "vertices") continue;
-        EXPECT_EQ(f.unique_bytes, f.bytes) << "an entry of a table has one reader";
-    }
-    return out;
-}
-
-// The cost table of docs/math/subdivision.md, 1.5, and the divisions that make the weights.
-TEST(SubdivisionKernels, CostWhatTheirLoopsSay)
+// What the threads of a kernel fetch and compute in all: tests/analysis/subdivision_cost_test.cpp.
+TEST(SubdivisionKernels, ReadEveryEntryOfTheirTablesOnce)
 {
     for (auto const& [name, mesh] : cages()) {
-        if (name.starts_with("tagged")) continue;
         SCOPED_TRACE(name);
         RefinedMesh const refined(mesh, 2, catmull_clark_step);
         CommandList list;
         add_vertices(list, refined, {});
         ListStatistics const run = run_commands(list, ThreadPool(2));
-        ASSERT_EQ(run.commands.size(), 6u);
-        for (std::size_t step = 0; step < 2; ++step) {
-            SubdivisionTables const& t = refined.tables()[step];
-            Counts faces, vertices;
-            for (std::size_t f = 0; f < t.faces; ++f) {
-                std::uint64_t const m = step ? 4 : t.face_offset_valence[2 * f + 1];
-                faces.add += 3 * (m - 1), faces.mul += 3, faces.div += step ? 0 : 1;
-                faces.index += (step ? 0 : 2) + m, faces.vertex += m;
+        EXPECT_GE(run.commands.size(), 6u);
+        for (CommandStatistics const& c : run.commands)
+            for (FetchStatistics const& f : c.statistics.stages.at(0).fetches) {
+                bool const shared = f.resource == "vertices" || f.resource == "blended_starts";
+                if (shared)
+                    EXPECT_LE(f.unique_bytes, f.bytes) << c.name << " " << f.resource;
+                else
+                    EXPECT_EQ(f.unique_bytes, f.bytes) << c.name << " " << f.resource;
             }
-            for (std::size_t v = 0; v < t.vertices; ++v) {
-                std::uint64_t const n = t.vertex_offset_valence[2 * v + 1];
-                bool const inner = n > 1;
-                vertices.add += 6 * n, vertices.mul += n ? 6 : 0, vertices.div += inner ? 2 : 0;
-                vertices.index += 2 + 2 * n, vertices.vertex += 1 + 2 * n;
-            }
-            Counts const edges{9ull * t.edges, 3ull * t.edges, 0, 4ull * t.edges, 4ull * t.edges};
-            EXPECT_EQ(counts_of(run.commands[3 * step]), faces);
-            EXPECT_EQ(counts_of(run.commands[3 * step + 1]), edges);
-            EXPECT_EQ(counts_of(run.commands[3 * step + 2]), vertices);
-        }
     }
 }
 

@@ -141,8 +141,8 @@ TEST(CatmullClark, SplitsEveryFaceAndKeepsTheLimit)
     EXPECT_EQ(s.faces(), 5u);
     EXPECT_EQ(s.positions.size(), 5u + 5 + 1);
     for (std::size_t f = 0; f < 5; ++f) EXPECT_EQ(s.face(f).size(), 4u);
-    EXPECT_EQ(s.positions[0], m.positions[0]); // one face: interpolated
-    EXPECT_EQ(s.positions[10], glm::vec3(1, 1.4f, 0));
+    EXPECT_EQ(s.positions[0], glm::vec3(1, 1.4f, 0)); // face, edges, vertices
+    EXPECT_EQ(s.positions[6], m.positions[0]);        // one face: interpolated
     Topology const refined(s);
     EXPECT_EQ(summarize(refined).boundary_edges, 10u);
 }

@@ -102,7 +102,7 @@ SubdivisionTable reproduce_loop10_table1(std::vector<ControlMesh> const& meshes,
                     1e3 * out.fit.frame, 1e3 * out.fit.dispatch),
         "Every cell is bound by these two: the work that is counted is" + bounds,
         "An overhead of a dispatch alone cannot explain the table: Cat takes two steps, twice the "
-        "dispatches of the others, and by the paper 1.13 and 1.36 times their time. A GPU that "
+        "dispatches of the others, and by the paper some 1.1 and 1.4 times their time. A GPU that "
         "loses little where the grid grows (the Radeon) and one that loses more (the GTX) are one "
         "GPU to this fit, which shows in Cat's cells.",
         loop10_models_remark()};

@@ -355,6 +355,7 @@ private:
         if (choices_.bspline) return bind_domain_shader(BsplineQuadDomainShader{}, s.machine);
         return bind_domain_shader(BezierQuadDomainShader{}, s.machine);
     }
+    bool reads_positions() const override { return true; } // of nets that are projected
     DomainShader prepared_domain_shader(CommandList& list, VertexSource const& positions,
                                         std::size_t kind, SurfaceSettings const& s) const override
     {

@@ -73,31 +73,29 @@ TEST(ComputeShader, R144VectorsAreReadAndWrittenWholeOrNotAtAll)
     // Any order, twice the same, the last one, past the end, far past it, as a negative number.
     std::vector<std::uint32_t> const index{4, 0, 4, 3, 1, 5, 0x2aaaaaab, 0xffffffff, 0,
                                            1, 2, 3, 4, 0, 1, 2,          3,          2};
-    for (int stride : {3, 4})
-        for (Machine const& machine : test::machines())
-            for (int threads : {1, 3}) {
-                std::vector<float> from(std::size_t(5 * stride)), to(std::size_t(17 * stride), -1);
-                for (std::size_t k = 0; k < from.size(); ++k) from[k] = float(k) + 0.5f;
-                Doubled shader;
-                shader.index = {index, 0, "index"};
-                shader.in = {from, stride, 1, "in"};
-                shader.out = {to, stride, 2, "out"};
-                auto const program = bind_compute_shader(shader, machine);
-                DrawStatistics const n = dispatch(program, {3, 1, 1}, ThreadPool(threads));
-                for (std::size_t i = 0; i < 17; ++i) // the 18th thread writes past the end
-                    for (std::size_t k = 0; k < std::size_t(stride); ++k) {
-                        bool const read = index[i] < 5 && k < 3;
-                        float const expected = k == 3 ? -1
-                                               : read ? 2 * from[index[i] * std::size_t(stride) + k]
-                                                      : 0;
-                        ASSERT_EQ(to[i * std::size_t(stride) + k], expected) << i << " " << k;
-                    }
-                auto const& fetches = n.stages[0].fetches;
-                EXPECT_EQ(fetches[1].count, 24u);
-                EXPECT_EQ(fetches[1].bytes, 24u * 12);
-                EXPECT_EQ(fetches[1].unique_bytes, 5u * 12);
-                EXPECT_EQ(n.stages[0].output_bytes, 24u * 12);
-            }
+    constexpr std::size_t stride = RWVectorBuffer::kStride;
+    for (Machine const& machine : test::machines())
+        for (int threads : {1, 3}) {
+            std::vector<float> from(5 * stride), to(17 * stride, -1);
+            for (std::size_t k = 0; k < from.size(); ++k) from[k] = float(k) + 0.5f;
+            Doubled shader;
+            shader.index = {index, 0, "index"};
+            shader.in = {from, 1, "in"};
+            shader.out = {to, 2, "out"};
+            auto const program = bind_compute_shader(shader, machine);
+            DrawStatistics const n = dispatch(program, {3, 1, 1}, ThreadPool(threads));
+            for (std::size_t i = 0; i < 17; ++i) // the 18th thread writes past the end
+                for (std::size_t k = 0; k < stride; ++k) {
+                    bool const read = index[i] < 5 && k < 3;
+                    float const expected = k == 3 ? -1 : read ? 2 * from[index[i] * stride + k] : 0;
+                    ASSERT_EQ(to[i * stride + k], expected) << i << " " << k;
+                }
+            auto const& fetches = n.stages[0].fetches;
+            EXPECT_EQ(fetches[1].count, 24u);
+            EXPECT_EQ(fetches[1].bytes, 24u * 12);
+            EXPECT_EQ(fetches[1].unique_bytes, 5u * 12);
+            EXPECT_EQ(n.stages[0].output_bytes, 24u * 12);
+        }
 }
 
 TEST(ComputeShader, R151LimitsAreNamedAndAnEmptyDispatchDoesNothing)
