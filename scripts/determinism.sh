@@ -81,7 +81,7 @@ for compiler in g++ clang++; do
         done
         # The golem is quads with texture coordinates, the spindle triangles without: no image can
         # displace it, and the error view has no quads to compare.
-        for scheme in gregory-stencil gregory-two-stage acc pm phong; do
+        for scheme in gregory-stencil gregory-two-stage acc pm phong stam; do
             cage=golem
             variants=("--contraction none" "--contraction mixed:5" "--tess-edge pixels=6"
                 "--displace studs --animate sway --phase 0.3 --contraction mixed:5" "--direct3d 10")

@@ -96,7 +96,7 @@ constexpr TangentFrame<T> stam_quad(StamTables<Weight> const& tables, Point cons
     Routine<T> const here("stam_quad");
     float3<T> const zero(T(0), T(0), T(0));
     StamFrame<T> s{zero, zero, zero};
-    auto const corner = (u == T(0)) & (v == T(0));
+    mask_of<T> const first_u = u == T(0), first_v = v == T(0), corner = first_u & first_v;
     s = when(
         corner,
         [&] {

@@ -23,6 +23,7 @@
 #include <cstring>
 #include <map>
 #include <sstream>
+#include <tuple>
 
 namespace tessemu {
 namespace {
@@ -252,6 +253,47 @@ TEST(Stam, OnOpenCagesTheFacesAtTheBoundaryAreGregoryPatches)
     visit_surface(*on.patches, {}, ThreadPool(1),
                   [&](SurfacePatch const& p) { exact += p.kind().name == "regular quad"; });
     EXPECT_EQ(exact, (2 * 5 - 2) * (2 * 4 - 2));
+}
+
+// They are gregory-stencil's of the same refined mesh, to the bit.
+TEST(Stam, FacesAtTheBoundaryAreThoseOfGregoryStencil)
+{
+    struct Cage {
+        ControlMesh mesh;
+        int steps;
+    };
+    for (Cage const& cage : {Cage{load_model("jug").mesh, 2}, Cage{test::grid(5, 4).mesh, 1}}) {
+        FrameSettings s;
+        s.tess_factor = 5.3f;
+        std::map<std::tuple<std::uint32_t, int, int, int, int>, std::vector<float>> gregory;
+        auto const each = [&](PatchMesh const& patches, auto const& work) {
+            visit_surface(patches, s, ThreadPool(1), [&](SurfacePatch const& p) {
+                if (p.kind().name != "Gregory quad") return;
+                PatchPlace const& at = p.place();
+                std::vector<float> points;
+                for (std::size_t i = 0; i < p.points(); ++i) {
+                    SurfaceVertex const v = p.vertex(i);
+                    for (int k = 0; k < 3; ++k)
+                        points.insert(points.end(), {v.position[k], v.normal[k]});
+                }
+                work(std::tuple(at.face, int(at.corner), int(at.i), int(at.j), int(at.rotation)),
+                     points);
+            });
+        };
+        SchemeOnMesh const reference =
+            build_scheme(find_scheme("gregory-stencil"), cage.mesh, {.subdivide = cage.steps});
+        each(*reference.patches, [&](auto const& at, auto const& points) { gregory[at] = points; });
+        for (ParameterTexts const& choices : all_choices()) {
+            SchemeOnMesh const on = stam(cage.mesh, choices);
+            std::size_t compared = 0;
+            each(*on.patches, [&](auto const& at, auto const& points) {
+                ASSERT_TRUE(gregory.count(at));
+                EXPECT_EQ(points, gregory[at]);
+                ++compared;
+            });
+            EXPECT_EQ(compared, boundary_faces(on.mesh->topology()));
+        }
+    }
 }
 
 // A closed strip of four quads around an axis, with vertices of two edges at its ends.
