@@ -182,24 +182,6 @@ std::string finish(Json j, ReportHeader const& header, AddResult const& add_resu
     return j.dump(2) + "\n";
 }
 
-std::string counted(std::uint64_t n)
-{
-    std::string digits = std::to_string(n), out;
-    for (std::size_t i = 0; i < digits.size(); ++i) {
-        if (i && (digits.size() - i) % 3 == 0) out += ',';
-        out += digits[i];
-    }
-    return out;
-}
-
-std::string histogram(std::vector<std::pair<std::size_t, std::size_t>> const& entries)
-{
-    std::string out;
-    for (auto const& [key, n] : entries)
-        out += fmt::format("{}{}:{}", out.empty() ? "" : "  ", key, n);
-    return out.empty() ? "-" : out;
-}
-
 Json pairs(std::vector<std::pair<std::size_t, std::size_t>> const& entries)
 {
     Json j = Json::object();
@@ -218,14 +200,15 @@ void add_targets(Sha256& hash, ColorTarget const& color, DepthTarget const& dept
         hash.add(depth.codes() + depth.index(0, y), codes * sizeof(std::uint32_t));
 }
 
-std::uint64_t fetched_bytes(DrawStatistics const& s)
+} // namespace
+
+std::uint64_t SequenceFrame::fetched_bytes() const
 {
     std::uint64_t n = 0;
-    for (StageStatistics const& stage : s.stages)
+    for (StageStatistics const& stage : statistics.total.stages)
         for (FetchStatistics const& f : stage.fetches) n += f.bytes;
     return n;
 }
-} // namespace
 
 std::string draw_report(ReportHeader const& header, Frame const& frame)
 {
@@ -249,29 +232,13 @@ std::string sequence_report(ReportHeader const& header, std::vector<SequenceFram
     j["frames"] = Json::array();
     for (SequenceFrame const& f : frames) {
         Json frame{{"phase", f.phase}, {"upload_bytes", f.upload_bytes}};
-        frame["fetched_bytes"] = fetched_bytes(f.statistics.total);
+        frame["fetched_bytes"] = f.fetched_bytes();
         add_statistics(frame, f.statistics.total);
         add_commands(frame, f.statistics.commands);
         frame["target_sha256"] = f.target_sha256;
         j["frames"].push_back(std::move(frame));
     }
     return finish(std::move(j), header, [](Sha256&) {});
-}
-
-std::string sequence_table(std::vector<SequenceFrame> const& frames)
-{
-    std::string out =
-        fmt::format("{:>5} {:>7} {:>13} {:>12} {:>12} {:>11} {:>13} {:>16}\n", "frame", "phase",
-                    "upload bytes", "VS runs", "CS threads", "points", "pixels", "fetched bytes");
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-        SequenceFrame const& f = frames[i];
-        PipelineStatistics const& p = f.statistics.total.pipeline;
-        out += fmt::format("{:>5} {:>7.4f} {:>13} {:>12} {:>12} {:>11} {:>13} {:>16}\n", i, f.phase,
-                           counted(f.upload_bytes), counted(p.VSInvocations),
-                           counted(p.CSInvocations), counted(p.DSInvocations),
-                           counted(p.PSInvocations), counted(fetched_bytes(f.statistics.total)));
-    }
-    return out;
 }
 
 std::string export_report(ReportHeader const& header, ListStatistics const& statistics,
@@ -317,29 +284,6 @@ std::string subdivide_report(ReportHeader const& header, ListStatistics const& s
                               {"kernels", kernels}});
     }
     return finish(std::move(j), header, [&](Sha256& hash) { add_to_hash(mesh, placement, hash); });
-}
-
-std::string subdivide_table(std::vector<SubdivisionRow> const& steps)
-{
-    if (steps.empty()) return "";
-    std::string out;
-    auto const line = [&](auto const&... column) {
-        out += fmt::format("{:>4} {:<14} {:>10} {:>12} {:>12} {:>12} {:>12} {:>14} {:>7} {:>7}\n",
-                           column...);
-    };
-    line("", "", "", "", "", "index", "vertex", "bytes", "lost at", "lost at");
-    line("step", "kernel", "threads", "add", "mul, div", "fetches", "fetches", "fetched", "32",
-         "64");
-    for (std::size_t i = 0; i < steps.size(); ++i)
-        for (KernelRow const& k : steps[i].kernels) {
-            auto const lost = [&](std::size_t l) {
-                return l < k.loops.size() ? fmt::format("{:.2f} %", 100 * k.loops[l].lost) : "-";
-            };
-            line(i + 1, k.kernel, counted(k.threads), counted(k.flops.add),
-                 counted(flops_loop10(k.flops)), counted(k.index_fetches),
-                 counted(k.vertex_fetches), counted(k.fetched_bytes), lost(0), lost(1));
-        }
-    return out + "\n";
 }
 
 std::string info_report(ReportHeader const& header, MeshSummary const& s,
@@ -389,20 +333,6 @@ std::string compare_report(ReportHeader const& header, double diagonal,
     return finish(std::move(j), header, [](Sha256&) {});
 }
 
-std::string compare_table(std::vector<ErrorRow> const& rows)
-{
-    std::string out = fmt::format("{:<10} {:<31} {:<9} {:>11} {:>11} {:>11} {:>9}\n", "error",
-                                  "measure", "unit", "max", "mean", "rms", "samples");
-    for (ErrorRow const& r : rows) {
-        auto const value = [&](double x) {
-            return r.samples ? fmt::format("{:.4g}", x) : std::string("-");
-        };
-        out += fmt::format("{:<10} {:<31} {:<9} {:>11} {:>11} {:>11} {:>9}\n", r.quantity,
-                           r.measure, r.unit, value(r.max), value(r.mean), value(r.rms), r.samples);
-    }
-    return out;
-}
-
 std::string diff_report(ReportHeader const& header, std::vector<ResultValue> const& values)
 {
     Json j = start(header);
@@ -418,16 +348,6 @@ std::string diff_report(ReportHeader const& header, std::vector<ResultValue> con
     return finish(std::move(j), header, [](Sha256&) {});
 }
 
-namespace {
-
-// Equal numbers have the ratio 1, zeros too.
-double ratio_of(PaperRow const& r)
-{
-    return r.ours == r.paper ? 1 : r.ours / r.paper;
-}
-
-} // namespace
-
 std::string paper_report(ReportHeader const& header, std::string const& title,
                          std::vector<PaperRow> const& rows, std::vector<std::string> const& remarks)
 {
@@ -439,24 +359,9 @@ std::string paper_report(ReportHeader const& header, std::string const& title,
                               {"column", r.column},
                               {"paper", r.paper},
                               {"ours", r.ours},
-                              {"ratio", to_json(ratio_of(r))}});
+                              {"ratio", to_json(r.ratio())}});
     j["remarks"] = remarks;
     return finish(std::move(j), header, [](Sha256&) {});
-}
-
-std::string paper_table(std::string const& title, std::vector<PaperRow> const& rows,
-                        std::vector<std::string> const& remarks)
-{
-    std::string out = fmt::format("{}\n\n{:<38} {:<46} {:>9} {:>9} {:>6}\n", title, "", "", "paper",
-                                  "ours", "ratio");
-    std::string row;
-    for (PaperRow const& r : rows) {
-        out += fmt::format("{:<38} {:<46} {:>9.4g} {:>9.4g} {:>6.2f}\n", r.row == row ? "" : r.row,
-                           r.column, r.paper, r.ours, ratio_of(r));
-        row = r.row;
-    }
-    for (std::string const& remark : remarks) out += "\n" + remark + "\n";
-    return out;
 }
 
 std::string check_report(ReportHeader const& header, std::vector<VerdictRow> const& verdicts)
@@ -492,27 +397,6 @@ std::string check_report(ReportHeader const& header, std::vector<VerdictRow> con
     return finish(std::move(j), header, [](Sha256&) {});
 }
 
-std::string check_table(std::vector<VerdictRow> const& verdicts, std::size_t most)
-{
-    std::string out =
-        fmt::format("{:<10} {:<8} {:>12} {:>10}\n", "", "verdict", "checked", "failures");
-    for (VerdictRow const& v : verdicts) {
-        bool const is_short = v.reason.size() <= 60;
-        out += fmt::format("{:<10} {:<8} {:>12} {:>10}  {}\n", v.name, v.verdict,
-                           counted(v.checked), counted(v.failures), is_short ? v.reason : "");
-        std::string_view rest = is_short ? std::string_view() : v.reason;
-        while (!rest.empty()) { // a part a line
-            std::size_t const end = std::min(rest.find("; "), rest.size());
-            out += fmt::format("    {}\n", rest.substr(0, end));
-            rest.remove_prefix(std::min(end + 2, rest.size()));
-        }
-        for (std::size_t i = 0; i < std::min(most, v.sites.size()); ++i)
-            out += "    " + v.sites[i].text + "\n";
-        if (v.failures > most) out += fmt::format("    and {} more\n", counted(v.failures - most));
-    }
-    return out;
-}
-
 std::string cost_report(ReportHeader const& header, CostSummary const& c)
 {
     Json j = start(header);
@@ -539,24 +423,6 @@ std::string cost_report(ReportHeader const& header, CostSummary const& c)
     return finish(std::move(j), header, [](Sha256&) {});
 }
 
-std::string cost_table(CostSummary const& c)
-{
-    auto const ms = [](double s) {
-        return s == 0 ? std::string("-") : fmt::format("{:.4f}", 1e3 * s);
-    };
-    std::string out =
-        fmt::format("{}\n\n{:<16} {:>11} {:>11} {:>11} {:>11} {:>11}  {}\n", c.gpu, "stage, ms",
-                    "arithmetic", "fetch", "memory", "rate", "all", "bound by");
-    for (CostRow const& r : c.rows)
-        out += fmt::format("{:<16} {:>11} {:>11} {:>11} {:>11} {:>11}  {}\n", r.stage,
-                           ms(r.arithmetic), ms(r.fetch), ms(r.memory), ms(r.fixed), ms(r.seconds),
-                           r.bound);
-    out +=
-        fmt::format("\nshaders {} ms, overhead {} ms, draw {} ms ({:.1f} a second), bound by {}\n",
-                    ms(c.shaders), ms(c.overhead), ms(c.seconds), 1 / c.seconds, c.bound);
-    return out;
-}
-
 std::string tessellate_report(ReportHeader const& header, TessellatorCase const& c,
                               TessellatedPatch const& patch)
 {
@@ -567,86 +433,6 @@ std::string tessellate_report(ReportHeader const& header, TessellatorCase const&
     j["v"] = patch.v;
     j["indices"] = patch.indices;
     return finish(std::move(j), header, [](Sha256&) {});
-}
-
-std::string counters_table(DrawStatistics const& s)
-{
-    std::string out = fmt::format("{:<16} {:>13} {:>14} {:>14} {:>11} {:>9} {:>9}\n", "stage",
-                                  "invocations", "add", "mul", "mad", "div", "sqrt");
-    for (StageStatistics const& stage : s.stages)
-        out += fmt::format("{:<16} {:>13} {:>14} {:>14} {:>11} {:>9} {:>9}\n", stage.stage,
-                           counted(stage.invocations), counted(stage.flops.add),
-                           counted(stage.flops.mul), counted(stage.flops.mad),
-                           counted(stage.flops.div), counted(stage.flops.sqrt));
-    out += fmt::format("\n{:<16} {:<22} {:<15} {:>15} {:>16} {:>16}\n", "fetches of", "resource",
-                       "kind", "count", "bytes", "unique bytes");
-    for (StageStatistics const& stage : s.stages)
-        for (FetchStatistics const& f : stage.fetches)
-            out += fmt::format("{:<16} {:<22} {:<15} {:>15} {:>16} {:>16}\n", stage.stage,
-                               f.resource, name_of(f.kind), counted(f.count), counted(f.bytes),
-                               counted(f.unique_bytes));
-    PipelineStatistics const& p = s.pipeline;
-    out += fmt::format(
-        "\n{} patches, {} domain points, {} triangles, {} after clipping, {} pixels shaded\n",
-        counted(p.HSInvocations), counted(p.DSInvocations), counted(p.CInvocations),
-        counted(p.CPrimitives), counted(p.PSInvocations));
-    return out;
-}
-
-namespace {
-
-// LOOP10's types that the patches are of, those of most patches first.
-std::string valence_table(std::vector<PatchCount> const& patches)
-{
-    constexpr std::size_t kShown = 12, kALine = 4;
-    std::vector<std::pair<ValenceType, std::size_t>> used;
-    for (PatchCount const& c : patches)
-        used.insert(used.end(), c.valence_types.begin(), c.valence_types.end());
-    if (used.empty()) return "";
-    std::stable_sort(used.begin(), used.end(),
-                     [](auto const& a, auto const& b) { return a.second > b.second; });
-    auto const count = [&](auto const& is) {
-        return std::count_if(used.begin(), used.end(), [&](auto const& t) { return is(t.first); });
-    };
-    auto const known = count([](ValenceType const&t) { return t.is_of_loop10(); }),
-               isolated =
-                   count([](ValenceType const&t) { return t.is_of_loop10() && t.is_isolated(); });
-    std::string out = fmt::format("\ncorner valences of quads: {} types, {} of LOOP10's {}, {} of "
-                                  "the {} that isolation leaves\n",
-                                  used.size(), known, valence_types().size(), isolated,
-                                  isolated_valence_types().size());
-    for (std::size_t i = 0; i < std::min(kShown, used.size()); ++i) {
-        auto const& [type, n] = used[i];
-        bool const last = i % kALine == kALine - 1 || i + 1 == std::min(kShown, used.size());
-        std::string const valences = fmt::format("{}", fmt::join(type.valence, " "));
-        out += last ? fmt::format("  {:<11} {}\n", valences, n)
-                    : fmt::format("  {:<11} {:<7}", valences, n);
-    }
-    if (used.size() > kShown) out += fmt::format("  and {} more\n", used.size() - kShown);
-    return out;
-}
-
-} // namespace
-
-std::string info_table(MeshSummary const& s, std::vector<PatchCount> const& patches)
-{
-    std::string out = fmt::format(
-        "vertices           {}{}\nfaces              {}   by sides  {}\nedges              {}\n"
-        "boundary edges     {}   {}\ncomponents         {}\ninterior valences  {}\n"
-        "boundary valences  {}\nregular faces      {}\n",
-        s.vertices, s.unused_vertices ? fmt::format("   ({} unused)", s.unused_vertices) : "",
-        s.faces, histogram(s.faces_by_size), s.edges, s.boundary_edges,
-        s.boundary_edges ? "open" : "closed", s.components, histogram(s.interior_valences),
-        histogram(s.boundary_valences), s.regular_faces);
-    if (patches.empty()) return out;
-    out += fmt::format("\n{:<18} {:>9} {:>20} {:>10}\n", "patch kind", "patches",
-                       "connectivity types", "inputs");
-    for (PatchCount const& c : patches)
-        out += fmt::format("{:<18} {:>9} {:>20} {:>10}\n", c.kind.name, c.patches, c.types,
-                           c.min_inputs == c.max_inputs
-                               ? std::to_string(c.min_inputs)
-                               : fmt::format("{}-{}", c.min_inputs, c.max_inputs));
-    return out + valence_table(patches);
 }
 
 } // namespace tessemu

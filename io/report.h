@@ -46,6 +46,9 @@ struct SequenceFrame {
     std::uint64_t upload_bytes = 0; ///< what an application sends for it: the pose
     ListStatistics statistics;
     std::string target_sha256; ///< of colour and depth, as draw_report hashes them
+
+    /// By all stages.
+    std::uint64_t fetched_bytes() const;
 };
 std::string sha256_of_targets(ColorTarget const& color, DepthTarget const& depth);
 /// draw of several frames: "frames" with the counters and commands of each.
@@ -103,6 +106,9 @@ std::string compare_table(std::vector<ErrorRow> const& rows);
 struct PaperRow {
     std::string row, column;
     double paper, ours;
+
+    /// Equal numbers have the ratio 1, zeros too.
+    double ratio() const { return ours == paper ? 1 : ours / paper; }
 };
 /// reproduce: each cell with ours / paper.
 std::string paper_report(ReportHeader const& header, std::string const& title,
