@@ -87,8 +87,8 @@ template <class T> struct StamFrame {
 /// three products.
 ///
 /// \param point  point(i): C^_i, asked for once each
-/// \cost         away from (0,0) 54 mul a function (LOOP10's 54 of 108n + 534), and 61 beside them (67
-///               with the cross product)
+/// \cost         away from (0,0) 54 mul a function (LOOP10's 54 of 108n + 534), and 61 beside them
+///               (67 with the cross product)
 template <class T, class Weight, class Point>
 constexpr TangentFrame<T> stam_quad(StamTables<Weight> const& tables, Point const& point, T u, T v)
 {

@@ -39,8 +39,8 @@ struct StamEigen {
 /// \cost  operations: some 30 times the square of the valence
 StamEigen stam_eigen(int valence);
 
-/// Where (x, y) of the picture above stands in a net's order; both from -1 to 2, (-1, -1) of valence
-/// 4 alone.
+/// Where (x, y) of the picture above stands in a net's order; both from -1 to 2, (-1, -1) of
+/// valence 4 alone.
 int stam_net_point(int valence, int x, int y);
 
 } // namespace tessemu
