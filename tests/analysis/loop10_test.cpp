@@ -1,5 +1,5 @@
-// LOOP10's table 1 and figure 4 by other meshes, what a subdivision step costs, and up to which tess
-// factor a regular patch is cheaper as a B-spline.
+// LOOP10's table 1 and figure 4 by other meshes, what a subdivision step costs, and up to which
+// tess factor a regular patch is cheaper as a B-spline.
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/papers/loop10/figure2.h"
