@@ -115,6 +115,11 @@ int CommandLine::run(int argc, char const* const* argv)
 {
     try {
         return parse_and_work(argc, argv);
+    } catch (std::bad_alloc const&) {
+        print_message(fmt::format("{}: out of memory: fewer steps of subdivision, a smaller tess "
+                                  "factor or a smaller picture need less\n",
+                                  name_));
+        return 2;
     } catch (std::exception const& e) {
         print_message(fmt::format("{}: {}\n", name_, e.what()));
         return 2;

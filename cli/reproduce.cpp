@@ -35,7 +35,11 @@ PaperInput load_input(ReproduceRequest const& o, ReportHeader& header)
     PaperInput in;
     for (PaperModel const& m : o.item->models) {
         std::string const path = m.builtin ? m.name : o.models + "/" + m.name + ".obj";
-        if (!m.required && !std::filesystem::exists(path)) continue;
+        bool const is_there = m.builtin || std::filesystem::exists(path);
+        if (!m.required && !is_there) continue;
+        if (!is_there)
+            throw Error(path + ": no such file; " + o.item->name + " needs " + m.name +
+                        ".obj, in the folder of --models");
         Model model = open_model(path);
         header.inputs.emplace_back(model.name, model.sha256);
         for (std::string& w : without_folder(std::move(model.warnings), path))
@@ -78,8 +82,9 @@ int run(ReproduceRequest const& o)
     PaperItem const& item = *o.item;
     std::string const output = o.output.empty() ? item.name + ".png" : o.output;
     if (item.figure && !o.run.json.empty())
-        throw Error("--json is of tables; a figure is a picture");
-    if (!item.figure && !o.output.empty()) throw Error("-o is of figures; --json writes a table");
+        throw Error("--json is of tables; " + item.name + " is a picture");
+    if (!item.figure && !o.output.empty())
+        throw Error("-o is of pictures; " + item.name + " is a table, which --json writes");
     if (o.level && item.level == 0) throw Error("--level: " + item.name + " has no level");
     RunOutput out(o.run.json);
     OutputFile* const picture = item.figure ? &out.add(output) : nullptr;

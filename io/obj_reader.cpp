@@ -86,6 +86,8 @@ private:
 
     void check_encoding(std::string_view text) const
     {
+        if (text.starts_with("ply\n") || text.starts_with("ply\r"))
+            throw FormatError(name_, 0, "is a PLY file, which is written only; models are OBJ");
         if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
             throw FormatError(name_, 0, "is UTF-16 text; save it as UTF-8");
         if (std::size_t const at = text.find('\0'); at != text.npos)

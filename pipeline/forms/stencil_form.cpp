@@ -169,10 +169,10 @@ void StencilForm::make_tables(std::vector<TypeAhead> const& ahead)
     }
     if (last) last->stencils.rows = {};
     if (wide)
-        another_way_ = another_way_of(
+        draws_another_way(another_way_of(
             wide, first,
             "more than " + std::to_string(kMaxControlPoints) + " inputs (up to " +
-                std::to_string(most) + "): a dispatch sums their control points before the draw");
+                std::to_string(most) + "): a dispatch sums their control points before the draw"));
 }
 
 StencilForm::Table StencilForm::add_table(std::size_t kind, Neighbourhood const& n)

@@ -101,7 +101,14 @@ protected:
 
     /// What the scheme itself has to say, beside the form.
     void warn(std::string warning) { warnings_.push_back(std::move(warning)); }
-    void draws_another_way(AnotherWay way) { another_way_ = std::move(way); }
+    /// Of several, all but the first are warnings alone.
+    void draws_another_way(AnotherWay way)
+    {
+        if (another_way_)
+            warn(std::move(way.what));
+        else
+            another_way_ = std::move(way);
+    }
 
     // What a scheme says. Kinds are numbers in the constructor's list.
     virtual std::size_t kind_of(std::uint32_t face) const = 0;

@@ -14,6 +14,15 @@ RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step,
         throw Error("steps of subdivision is " + std::to_string(steps) + ", it must be 0 or more");
     if (steps > kMaxSteps)
         throw LimitError("steps of subdivision", std::uint64_t(steps), kMaxSteps);
+    auto const faces = [&](int n) {
+        return n ? std::uint64_t(base_->face_vertices.size()) << 2 * (n - 1) : base_->faces();
+    };
+    if (int fit = steps; faces(steps) > kMostFaces) {
+        while (fit > 0 && faces(fit) > kMostFaces) --fit;
+        throw LimitError("faces after " + std::to_string(steps) + " steps of subdivision (" +
+                             std::to_string(fit) + " would do)",
+                         faces(steps), kMostFaces);
+    }
     places_.reserve(base_->faces());
     for (std::uint32_t f = 0; f < base_->faces(); ++f) {
         PatchPlace p;

@@ -27,10 +27,12 @@ using RefinementProgress = std::function<void(std::size_t, std::size_t)>;
 class RefinedMesh {
 public:
     static constexpr int kMaxSteps = 8;
+    /// Some 400 bytes each, with the tables that make them.
+    static constexpr std::uint64_t kMostFaces = std::uint64_t(1) << 25;
 
     /// \param steps  0 to kMaxSteps
     /// \cost         memory for the last two meshes and all tables, four times larger with each step
-    /// Throws LimitError for more steps and MeshError for a mesh that is no manifold.
+    /// Throws LimitError for more steps or more faces than kMostFaces, and MeshError for a mesh that is no manifold.
     RefinedMesh(ControlMesh mesh, int steps, RefinementStep step,
                 RefinementProgress const& progress = {});
     RefinedMesh(RefinedMesh&&) = default;

@@ -44,6 +44,11 @@ Scheme const& find_scheme(std::string_view name)
 
 namespace {
 
+std::string counted(std::size_t n, char const* one, char const* more)
+{
+    return std::to_string(n) + " " + (n == 1 ? one : more);
+}
+
 std::string in_words_of_steps(int steps)
 {
     return std::to_string(steps) + (steps == 1 ? " step" : " steps") + " of subdivision";
@@ -254,14 +259,14 @@ void warn_of_tags(SchemeInfo const& info, RefinedMesh const& refined, std::vecto
             refined.mesh().creases.begin(), refined.mesh().creases.end(),
             [&](ControlMesh::Crease const& c) { return is_inside(refined.topology(), c); });
     if (creases && !info.takes.creases)
-        out.push_back(std::to_string(creases) + " crease edges are drawn smooth" + after +
-                      ": the scheme knows no creases");
+        out.push_back(counted(std::size_t(creases), "crease edge is", "crease edges are") +
+                      " drawn smooth" + after + ": the scheme knows no creases");
     auto const corners =
         std::count_if(mesh.corners.begin(), mesh.corners.end(),
                       [&](ControlMesh::Corner const& c) { return is_left(c.sharpness); });
     if (corners && !info.takes.corners)
-        out.push_back(std::to_string(corners) + " sharp corners are drawn smooth" + after +
-                      ": the scheme knows no corners");
+        out.push_back(counted(std::size_t(corners), "sharp corner is", "sharp corners are") +
+                      " drawn smooth" + after + ": the scheme knows no corners");
     ControlMesh const& drawn = refined.mesh();
     bool triangles = false;
     for (std::size_t f = 0; f < drawn.faces() && !triangles; ++f)
@@ -284,12 +289,12 @@ bool resolve_sort(SchemeInfo const& info, int steps, Parameters& parameters)
 {
     SchemeParameter const& sort = sort_parameter();
     bool const is_given = parameters.values().count(sort.name) > 0;
-    if (steps == 0 && is_given)
+    if (steps == 0 && is_given && parameters.word(sort.name) != sort.words[0])
         throw Error(info.name + ": " + sort.name + " is '" + parameters.word(sort.name) +
-                    "', and no step of subdivision is taken whose tables it would sort: take one "
-                    "(--subdivide 1), or leave it out");
-    if (steps > 0 && !is_given) parameters.set(sort.name, sort.words[0]);
-    return steps > 0 && parameters.word(sort.name) != sort.words[0];
+                    "', and no step of subdivision is taken whose tables it would sort");
+    if (steps == 0) return false;
+    if (!is_given) parameters.set(sort.name, sort.words[0]);
+    return parameters.word(sort.name) != sort.words[0];
 }
 
 // What the scheme takes is refined, anything else refused or, unless it must be taken, refined too.
@@ -330,7 +335,7 @@ SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const
     RefinedMesh const& refined = *out.mesh;
     if (sides.polygons && own > 0)
         warn(out, options,
-             {std::to_string(sides.polygons) + " faces have more than 4 sides (up to " +
+             {counted(sides.polygons, "face has", "faces have") + " more than 4 sides (up to " +
               std::to_string(sides.sides) + "): " +
               (own == 1 ? "one Catmull-Clark step makes "
                         : std::to_string(own) + " Catmull-Clark steps make ") +

@@ -457,7 +457,7 @@ TEST(Program, ExportWeldsAndNamesWhatItCannotHonour)
     Result const r =
         run("export " + cage.string() + " --tess 2 --weld -o " + (scratch() / "c.obj").string());
     EXPECT_EQ(r.status, 0);
-    EXPECT_NE(r.err.find("warning: 1 crease edges are drawn smooth"), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find("warning: 1 crease edge is drawn smooth"), std::string::npos) << r.err;
 }
 
 TEST(Program, AMeshHasOneHashInBothFormats)

@@ -7,6 +7,7 @@
 #include "pipeline/mesh/catmull_clark.h"
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/random_mesh.h"
+#include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -215,6 +216,20 @@ TEST(Refinement, TheBaseMeshDoesNotDependOnTheSteps)
             SchemeOnMesh const m = build_scheme(stencils(), mesh, {.subdivide = steps});
             EXPECT_EQ(m.mesh->base().positions, mesh.positions) << sides << " " << steps;
         }
+    }
+}
+
+TEST(Refinement, MoreFacesThanMemoryHoldsAreRefusedBeforeTheyAreMade)
+{
+    ControlMesh const grid = test::grid(100, 100).mesh; // 40,000 corners
+    try {
+        RefinedMesh(grid, 7, catmull_clark_step);
+        FAIL();
+    } catch (LimitError const& e) {
+        EXPECT_EQ(e.value, 40000ull << 12);
+        EXPECT_NE(std::string(e.what()).find("7 steps of subdivision (5 would do)"),
+                  std::string::npos)
+            << e.what();
     }
 }
 

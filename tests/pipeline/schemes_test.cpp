@@ -204,7 +204,7 @@ TEST(Schemes, TagsThatAreNotHonouredAreWarnedOf)
             std::size_t creases = 0, corners = 0;
             for (std::string const& w : build_scheme(*scheme, mesh).warnings) {
                 creases += w.find("2 crease edges are drawn smooth") == 0;
-                corners += w.find("1 sharp corners are drawn smooth") == 0;
+                corners += w.find("1 sharp corner is drawn smooth") == 0;
             }
             EXPECT_EQ(creases, tagged && !info.takes.creases ? 1u : 0u) << info.name;
             EXPECT_EQ(corners, tagged && !info.takes.corners ? 1u : 0u) << info.name;

@@ -160,6 +160,18 @@ struct Valence {
     }
 };
 
+// Faces that take gregory-stencil's patches.
+struct Gregory {
+    std::size_t count = 0;
+    std::uint32_t first = 0xffffffffu; ///< by its number in the file
+
+    void add(RefinedMesh const& mesh, std::uint32_t face)
+    {
+        ++count;
+        first = std::min(first, mesh.base().file_face(mesh.place(face).face));
+    }
+};
+
 class StamPatches final : public StencilForm {
 public:
     StamPatches(std::shared_ptr<RefinedMesh const> refined, std::vector<int> const& valences,
@@ -217,7 +229,7 @@ private:
             bool boundary = false;
             for (std::uint32_t v : topology.mesh().face(face))
                 boundary = boundary || topology.is_boundary(v);
-            ++(boundary ? at_boundary_ : at_two_edges_);
+            (boundary ? at_boundary_ : at_two_edges_).add(mesh(), face);
         }
         if (!is_dispatched(kind)) return;
         Valence& v = valences_[kind - kFirstStamQuad];
@@ -253,17 +265,18 @@ private:
     }
     void say_what_is_different()
     {
-        auto const are = [](std::size_t n, std::string const& where) {
-            return (n == 1 ? "1 face " + where + " is a Gregory patch"
-                           : std::to_string(n) + " faces " + where + " are Gregory patches") +
-                   ", not exact: ";
+        auto const say = [&](Gregory const& faces, std::string const& where, char const* why) {
+            if (faces.count == 0) return;
+            draws_another_way(
+                {faces.first, (faces.count == 1 ? "1 face " + where + " is a Gregory patch"
+                                                : std::to_string(faces.count) + " faces " + where +
+                                                      " are Gregory patches") +
+                                  ", not exact: " + why});
         };
-        if (at_boundary_)
-            warn(are(at_boundary_, "at the boundary") +
-                 "the paper says nothing of boundaries in its tessellation stage");
-        if (at_two_edges_)
-            warn(are(at_two_edges_, "at a vertex of 2 edges") +
-                 "Stam's evaluation is for vertices of 3 edges and more");
+        say(at_boundary_, "at the boundary",
+            "the paper says nothing of boundaries in its tessellation stage");
+        say(at_two_edges_, "at a vertex of 2 edges",
+            "Stam's evaluation is for vertices of 3 edges and more");
         if (choices_.shared_edges) return; // where the form says it of its rows
         std::size_t wide = 0;
         int most = 0;
@@ -396,7 +409,7 @@ private:
     Choices choices_;
     GregoryParameters gregory_;
     std::vector<Valence> valences_; // by kind
-    std::size_t at_boundary_ = 0, at_two_edges_ = 0;
+    Gregory at_boundary_, at_two_edges_;
 };
 
 class Stam final : public Scheme {
