@@ -99,7 +99,7 @@ TEST(Program, BadUsageExitsTwoWithOneLineThatNamesTheValue)
              {"reproduce table9", "loop09-table3"},
              {"reproduce loop09-figure2", "loop09-figure12"},
              {"reproduce loop09-table2 --models nowhere", "nowhere/monsterfrog.obj"},
-             {"reproduce loop09-table1 -o a.png", "figures"},
+             {"reproduce loop09-table1 -o a.png", "of pictures; loop09-table1 is a table"},
              {"reproduce loop09-figure3 --json -", "picture"},
              {"reproduce loop09-table1 --level 2", "no level"},
              {"cost jug --gpu nowhere", "gtx260"},

@@ -19,11 +19,12 @@ TEST(TwoAxes, EveryEdgeOfTheSecondRowOfGroupsHasItsPoint)
     for (std::uint32_t e = 0; e < kEdges; ++e)
         for (std::uint32_t k : {0, 1, 2, 4}) t.edge_index.push_back((e + k) % kVertices);
     t.vertex_offset_valence.assign(2 * kVertices, 0);
-    std::vector<float> points(3 * std::size_t(t.buffer_size()), -1);
+    constexpr std::size_t kStride = RWVectorBuffer::kStride;
+    std::vector<float> points(kStride * t.buffer_size(), -1);
     for (std::uint32_t v = 0; v < kVertices; ++v)
-        for (std::uint32_t k = 0; k < 3; ++k) points[3 * v + k] = float(4 * (v * v + k));
+        for (std::uint32_t k = 0; k < 3; ++k) points[kStride * v + k] = float(4 * (v * v + k));
     CommandList list;
-    add_subdivision(list, std::span(&t, 1), points, 3, {});
+    add_subdivision(list, std::span(&t, 1), points, {});
     ListStatistics const statistics = run_commands(list, ThreadPool(2));
     ASSERT_EQ(statistics.commands.size(), 2u); // no face
     EXPECT_EQ(std::get<Dispatch>(list.commands[0]).groups,
@@ -31,7 +32,7 @@ TEST(TwoAxes, EveryEdgeOfTheSecondRowOfGroupsHasItsPoint)
     EXPECT_EQ(statistics.commands[0].statistics.stages[0].fetches[0].count, 4u * kEdges);
     std::size_t wrong = 0;
     for (std::uint32_t e = 0; e < kEdges; ++e) {
-        float const* const p = points.data() + 3 * std::size_t(t.first_edge_point() + e);
+        float const* const p = points.data() + kStride * (t.first_edge_point() + e);
         for (std::uint32_t k = 0; k < 3; ++k) {
             std::uint32_t sum = 0;
             for (std::uint32_t j : {0, 1, 2, 4}) {
@@ -44,8 +45,7 @@ TEST(TwoAxes, EveryEdgeOfTheSecondRowOfGroupsHasItsPoint)
     EXPECT_EQ(wrong, 0u);
     for (std::uint32_t v = 0; v < kVertices; ++v) // behind them, and untouched by other threads
         for (std::uint32_t k = 0; k < 3; ++k)
-            EXPECT_EQ(points[3 * std::size_t(t.first_vertex_point() + v) + k],
-                      float(4 * (v * v + k)));
+            EXPECT_EQ(points[kStride * (t.first_vertex_point() + v) + k], float(4 * (v * v + k)));
 }
 
 } // namespace
