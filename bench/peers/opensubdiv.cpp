@@ -3,11 +3,11 @@
 // "evaluation 10 MILLIONS_A_SECOND".
 //
 // SPDX-License-Identifier: Apache-2.0
+#include "bench/peers/opensubdiv_cage.h"
 #include "bench/scene.h"
 
 #include <opensubdiv/far/patchTableFactory.h>
 #include <opensubdiv/far/stencilTableFactory.h>
-#include <opensubdiv/far/topologyDescriptor.h>
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/cpuPatchTable.h>
 #include <opensubdiv/osd/cpuVertexBuffer.h>
@@ -22,19 +22,7 @@ int main()
 {
     BenchScene const scene;
     ControlMesh const& mesh = scene.mesh();
-    std::vector<int> sides, indices;
-    for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
-        sides.push_back(int(mesh.face(f).size()));
-        for (std::uint32_t v : mesh.face(f)) indices.push_back(int(v));
-    }
-    osd::Far::TopologyDescriptor d;
-    d.numVertices = int(mesh.positions.size());
-    d.numFaces = int(sides.size());
-    d.numVertsPerFace = sides.data();
-    d.vertIndicesPerFace = indices.data();
-    using Factory = osd::Far::TopologyRefinerFactory<osd::Far::TopologyDescriptor>;
-    std::unique_ptr<osd::Far::TopologyRefiner> const refiner(
-        Factory::Create(d, Factory::Options(osd::Sdc::SCHEME_CATMARK, osd::Sdc::Options())));
+    auto const refiner = opensubdiv_refiner(mesh);
     osd::Far::PatchTableFactory::Options options(1);
     options.SetEndCapType(osd::Far::PatchTableFactory::Options::ENDCAP_GREGORY_BASIS);
     refiner->RefineAdaptive(options.GetRefineAdaptiveOptions());

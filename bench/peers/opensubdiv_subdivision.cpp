@@ -3,11 +3,11 @@
 // that they need. Prints "stencils LEVEL MILLISECONDS", "points ...", "refinement ...".
 //
 // SPDX-License-Identifier: Apache-2.0
+#include "bench/peers/opensubdiv_cage.h"
 #include "bench/scene.h"
 
 #include <opensubdiv/far/primvarRefiner.h>
 #include <opensubdiv/far/stencilTableFactory.h>
-#include <opensubdiv/far/topologyDescriptor.h>
 #include <opensubdiv/osd/cpuEvaluator.h>
 #include <opensubdiv/osd/cpuVertexBuffer.h>
 
@@ -48,22 +48,8 @@ int main()
 {
     BenchScene const scene;
     ControlMesh const& mesh = scene.mesh();
-    std::vector<int> sides, indices;
-    for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
-        sides.push_back(int(mesh.face(f).size()));
-        for (std::uint32_t v : mesh.face(f)) indices.push_back(int(v));
-    }
-    osd::Far::TopologyDescriptor d;
-    d.numVertices = int(mesh.positions.size());
-    d.numFaces = int(sides.size());
-    d.numVertsPerFace = sides.data();
-    d.vertIndicesPerFace = indices.data();
-    using Factory = osd::Far::TopologyRefinerFactory<osd::Far::TopologyDescriptor>;
-    osd::Sdc::Options rules;
-    rules.SetVtxBoundaryInterpolation(osd::Sdc::Options::VTX_BOUNDARY_EDGE_AND_CORNER);
     for (int level = 1; level <= 3; ++level) {
-        std::unique_ptr<osd::Far::TopologyRefiner> const refiner(
-            Factory::Create(d, Factory::Options(osd::Sdc::SCHEME_CATMARK, rules)));
+        auto const refiner = opensubdiv_refiner(mesh);
         refiner->RefineUniform(osd::Far::TopologyRefiner::UniformOptions(level));
         osd::Far::StencilTableFactory::Options options;
         options.generateIntermediateLevels = false;
