@@ -48,7 +48,7 @@ public:
     /// Elements first + i for each set bit i of `bits`.
     void mark_run(std::size_t first, std::uint32_t bits)
     {
-        Mark* const marks = touched_.data() + first;
+        std::uint8_t* const marks = touched_.data() + first;
         for (; bits; bits &= bits - 1) mark(marks[std::countr_zero(bits)]);
     }
     /// The elements of the lanes in `bits`, those that there are.
@@ -56,7 +56,8 @@ public:
     {
         std::int32_t i[N];
         store_lanes<N>(index, i);
-        Mark* const marks = touched_.data(); // which a store of a byte might change, by the rules
+        std::uint8_t* const marks =
+            touched_.data(); // which a store of a byte might change, by rule
         std::size_t const size = touched_.size();
         auto const mark_lane = [&](int l) {
             if (std::size_t(i[l]) < size) mark(marks[i[l]]);
@@ -66,23 +67,24 @@ public:
         else
             for (; bits; bits &= bits - 1) mark_lane(std::countr_zero(bits));
     }
+    /// When the threads are done.
     std::uint64_t count() const
     {
         std::uint64_t n = 0;
-        for (auto const& t : touched_) n += t.load(std::memory_order_relaxed);
+        for (std::uint8_t t : touched_) n += t;
         return n;
     }
 
 private:
-    using Mark = std::atomic<std::uint8_t>;
     // Most marks are there already: a read is cheap, a write would bounce between cores. A byte for
     // an element: bits of a word would have to be collected first, or locked one by one.
-    static void mark(Mark& m)
+    static void mark(std::uint8_t& m)
     {
-        if (!m.load(std::memory_order_relaxed)) m.store(1, std::memory_order_relaxed);
+        std::atomic_ref<std::uint8_t> const shared(m);
+        if (!shared.load(std::memory_order_relaxed)) shared.store(1, std::memory_order_relaxed);
     }
 
-    std::vector<Mark> touched_;
+    std::vector<std::uint8_t> touched_;
 };
 
 /// One thread's counter of one buffer slot.
