@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <tuple>
@@ -101,6 +102,7 @@ PatchValence PatchValences::operator()(PatchPlace const& place) const
     auto const found = std::lower_bound(
         faces_.begin(), faces_.end(), place,
         [](Entry const& e, PatchPlace const& p) { return by_place(e.place) < by_place(p); });
+    assert(found != faces_.end() && by_place(found->place) == by_place(place));
     return {found->valence};
 }
 

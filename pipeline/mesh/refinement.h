@@ -32,7 +32,8 @@ public:
 
     /// \param steps  0 to kMaxSteps
     /// \cost         memory for the last two meshes and all tables, four times larger with each step
-    /// Throws LimitError for more steps or more faces than kMostFaces, and MeshError for a mesh that is no manifold.
+    /// Throws LimitError for more steps or more faces than kMostFaces, and MeshError for a mesh that
+    /// is no manifold.
     RefinedMesh(ControlMesh mesh, int steps, RefinementStep step,
                 RefinementProgress const& progress = {});
     RefinedMesh(RefinedMesh&&) = default;

@@ -47,7 +47,7 @@ template <class T, class Point> float3<T> mean_of_four(Point const& point)
 
 /// V' of a vertex.
 ///
-/// \param n      faces around; 1: on a curve; 0: it stays
+/// \param n      faces around, at most 46,340: it is squared in 32 bits; 1: on a curve; 0: it stays
 /// \param v      the vertex
 /// \param point  (k): of the vertex's row of the table
 /// \cost         6 mul, 6 n add, 2 div; n = 1: 6 mul, 6 add; n = 0: none
