@@ -11,16 +11,11 @@
 
 namespace tessemu {
 
-enum class View { Lit, Normals, Patches, Valence, Depth, Wire, Coverage };
+enum class View { Lit, Normals, Patches, Valence, Zebra, Depth, Wire, Coverage };
 std::string_view name_of(View view);
 std::optional<View> view_from_name(std::string_view name);
 inline constexpr View kViews[] = {View::Lit,   View::Normals, View::Patches, View::Valence,
-                                  View::Depth, View::Wire,    View::Coverage};
-
-/// The pixel shader of a view; on a displaced surface normals follow the height map. That of the
-/// valence view depends on the patches: draw_frame makes it.
-PixelShader make_view(View view, PatchKind const& kind, Camera const& camera,
-                      Displacement const* displacement, Machine const& machine);
+                                  View::Zebra, View::Depth,   View::Wire,    View::Coverage};
 
 /// The colour of a class of patches in pictures.
 std::array<float, 3> color_of(PatchClass patch_class);
@@ -48,6 +43,10 @@ struct FrameSettings : SurfaceSettings {
     bool direct3d10 = false;  ///< by geometry shader and instances, see direct3d10.h
     VertexCacheModel vertex_cache;
 };
+
+/// The pixel shader of the settings' view for a draw of the surface; on a displaced surface normals
+/// follow the height map. That of the valence view depends on the patches: draw_frame makes it.
+PixelShader make_view(Draw const& draw, FrameSettings const& settings);
 
 /// The surface of a frame in object space: its adaptive rule from the camera, the identity
 /// transform.
