@@ -4,6 +4,7 @@
 #include "pipeline/commands/direct3d10.h"
 #include "pipeline/patch_valences.h"
 #include "shaders_cpp/pixel/bumped_view.h"
+#include "shaders_cpp/pixel/curvature_view.h"
 #include "shaders_cpp/pixel/zebra_view.h"
 
 #include <glm/geometric.hpp>
@@ -23,6 +24,8 @@ std::string_view name_of(View view)
         return "valence";
     case View::Zebra:
         return "zebra";
+    case View::Curvature:
+        return "curvature";
     case View::Depth:
         return "depth";
     case View::Wire:
@@ -93,6 +96,18 @@ PixelShader make_view(Draw const& draw, FrameSettings const& settings)
         return on_surface(NormalPixelShader{}, settings);
     case View::Zebra:
         return on_surface(zebra(settings), settings);
+    case View::Curvature: {
+        if (draw.has_curvature()) {
+            CurvaturePixelShader s;
+            s.scale = settings.curvature_max > 0 ? 1 / settings.curvature_max : 0;
+            s.light = as_array(light);
+            return bind_pixel_shader(s, settings.machine);
+        }
+        PatchPixelShader s; // told apart, in grey
+        s.color = {0.5f, 0.5f, 0.5f};
+        s.light = as_array(light);
+        return bind_pixel_shader(s, settings.machine);
+    }
     case View::Patches: {
         PatchPixelShader s;
         s.color = color_of(draw.kind.patch_class);
@@ -143,6 +158,7 @@ SurfaceSettings surface_settings(FrameSettings const& s)
 {
     SurfaceSettings out = s;
     out.adaptive_rule = tess_factor_rule(s.adaptive, s.camera, s.height, s.tess_factor);
+    out.curvature = s.curvature || s.view == View::Curvature;
     return out;
 }
 
@@ -156,6 +172,8 @@ SurfaceSettings seen_surface(FrameSettings const& s)
 CommandList frame_commands(PatchMesh const& mesh, FrameSettings const& s,
                            SurfaceSettings const& surface)
 {
+    if (surface.curvature && surface.displacement)
+        throw Error("curvature is that of the smooth surface: it is not shown of a displaced one");
     CommandList list = mesh.commands(surface);
     return s.direct3d10 ? instanced(std::move(list), surface) : list;
 }

@@ -7,6 +7,7 @@
 
 #include "pipeline/schemes/gregory/programs.h"
 #include "shaders_cpp/bezier_hull_shader.h"
+#include "shaders_cpp/curvature.h"
 #include "shaders_cpp/stam/stam_domain_shaders.h"
 #include "shaders_cpp/stam/stam_hull_shader.h"
 #include "shaders_cpp/stam/stam_projection_shader.h"
@@ -28,6 +29,12 @@ struct StamCorners {
     instantiate class DomainProgramOn<BsplineRowsDomainShader, T>;                                 \
     instantiate class DomainProgramOn<BsplineQuadDomainShader, T>;                                 \
     instantiate class DomainProgramOn<BezierQuadDomainShader, T>;                                  \
+    instantiate class DomainProgramOn<CurvedSurface<StamPointsDomainShader>, T>;                   \
+    instantiate class DomainProgramOn<CurvedSurface<StamBufferDomainShader>, T>;                   \
+    instantiate class DomainProgramOn<CurvedSurface<StamSharedDomainShader>, T>;                   \
+    instantiate class DomainProgramOn<CurvedSurface<BsplineRowsDomainShader>, T>;                  \
+    instantiate class DomainProgramOn<CurvedSurface<BsplineQuadDomainShader>, T>;                  \
+    instantiate class DomainProgramOn<CurvedSurface<BezierQuadDomainShader>, T>;                   \
     instantiate class HullProgramOn<StamHullShader<SummedRows<4>>, T>;                             \
     instantiate class HullProgramOn<NetHullShader<StamCorners>, T>;                                \
     instantiate class HullProgramOn<CagedStencilHullShader<SummedRows<4>>, T>;                     \

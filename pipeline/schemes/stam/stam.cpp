@@ -364,9 +364,9 @@ private:
         }
         if (kind == kGregoryQuad) return surface_shader<CagedGregoryDomainShader>(s);
         if (kind != kRegularQuad)
-            return bind_domain_shader(StamPointsDomainShader{{valence(kind).tables()}}, s.machine);
-        if (choices_.bspline) return bind_domain_shader(BsplineQuadDomainShader{}, s.machine);
-        return bind_domain_shader(BezierQuadDomainShader{}, s.machine);
+            return bind_surface(StamPointsDomainShader{{valence(kind).tables()}}, s);
+        if (choices_.bspline) return bind_surface(BsplineQuadDomainShader{}, s);
+        return bind_surface(BezierQuadDomainShader{}, s);
     }
     bool reads_positions() const override { return true; } // of nets that are projected
     DomainShader prepared_domain_shader(CommandList& list, VertexSource const& positions,
@@ -387,10 +387,8 @@ private:
             "projection, valence " + std::to_string(v.valence), bind_compute_shader(cs, s.machine),
             groups_for(cs.threads(v.faces.size(), v.functions), cs.kThreads[0])});
         StamBufferInside const inside{v.tables(), {*projected, 2, "projected_nets"}};
-        if (!choices_.shared_edges)
-            return bind_domain_shader(StamBufferDomainShader{inside}, s.machine);
-        return bind_domain_shader(StamSharedDomainShader{inside, {v.words, 3, "patch_words"}},
-                                  s.machine);
+        if (!choices_.shared_edges) return bind_surface(StamBufferDomainShader{inside}, s);
+        return bind_surface(StamSharedDomainShader{inside, {v.words, 3, "patch_words"}}, s);
     }
 
     static void erase_points(PatchStencils& s, int keep)
@@ -435,6 +433,7 @@ public:
                             0,
                             {"bezier", "bspline"}}};
         info.watertight_with = {{"edges", "shared"}};
+        info.no_curvature = {};
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
