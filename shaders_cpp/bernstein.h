@@ -1,11 +1,9 @@
-// Bernstein polynomials of any degree, and tensor-product patches of any basis.
+// Bernstein polynomials of any degree.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "shaders_cpp/records.h"
-
-#include <utility>
 
 namespace tessemu {
 
@@ -17,7 +15,6 @@ namespace tessemu {
 ///
 /// \cost  n (n + 1) mul
 template <int n, class T> struct BernsteinBasis {
-    static constexpr int kFunctions = n + 1;
     T b[n + 1]; ///< the polynomials
     T d[n + 1]; ///< their derivatives, without the factor n
 
@@ -53,43 +50,5 @@ template <int n, class T> struct SecondOrderBernsteinBasis : BernsteinBasis<n, T
         this->differences(BernsteinBasis<n - 1, T>(t).d, dd);
     }
 };
-
-/// Tensor-product patch S = U b V of two bases of N functions.
-///
-/// \param net  net(i, j): control point i along u, j along v; asked for once each
-/// \returns    position and the derivatives along u and v, in the bases' units
-/// \cost       6 N (N + 1) + 3 N mul
-template <class T, class Net, class Basis>
-constexpr TangentFrame<T> tensor_product(Net const& net, Basis const& U, Basis const& V)
-{
-    constexpr int N = Basis::kFunctions;
-    auto const sum = [](T const(&weight)[N], T const(&x)[N]) -> T {
-        return [&]<int... j>(std::integer_sequence<int, j...>)->T
-        {
-            return (... + (weight[j] * x[j]));
-        }
-        (std::make_integer_sequence<int, N>());
-    };
-    TangentFrame<T> s;
-    unrolled<N>([&](auto i) {
-        float3<T> b[N];
-        unrolled<N>([&](auto j) { b[j] = net(i, j); });
-        components([&](auto of) {
-            T x[N];
-            unrolled<N>([&](auto j) { x[j] = of(b[j]); });
-            T const row = sum(V.b, x), row_dv = sum(V.d, x);
-            if constexpr (i == 0) {
-                of(s.position) = U.b[0] * row;
-                of(s.du) = U.d[0] * row;
-                of(s.dv) = U.b[0] * row_dv;
-            } else {
-                of(s.position) = of(s.position) + U.b[i] * row;
-                of(s.du) = of(s.du) + U.d[i] * row;
-                of(s.dv) = of(s.dv) + U.b[i] * row_dv;
-            }
-        });
-    });
-    return s;
-}
 
 } // namespace tessemu

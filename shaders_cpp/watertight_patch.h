@@ -94,6 +94,8 @@ constexpr SurfacePoint<T> edge_point(EdgeCurve<T> const& edge, float3<T> const (
 ///         static bool has_own_edge(int k);
 ///         template <class T> static SurfacePoint<T> own_edge(
 ///             ControlPoints<ControlPoint<T>> const&, int k, T t);
+///         template <class T> static SecondOrderFrame<T> second_order( // optional: see curvature.h
+///             ControlPoints<ControlPoint<T>> const&, DomainInput<T> const&);
 ///     };
 ///
 /// Quad domain: corners p0 (0,0), p1 (1,0), p2 (1,1), p3 (0,1). Tri domain: u = 1 at p0, v = 1 at
@@ -129,6 +131,13 @@ template <class Inside> struct WatertightPatch {
             boundary, [&] { return boundary_point<T>(patch, registers, at); }, inside);
         s.normal = unit_or(s.normal, [&] { return nearest_corner_normal<T>(registers, in); });
         return s;
+    }
+    /// Of the inside, on edges too.
+    template <class T>
+    constexpr auto second_order(Patch<T> const& patch, DomainInput<T> const& in) const
+        requires(requires { Inside::template second_order<T>(patch, in); })
+    {
+        return Inside::template second_order<T>(patch, in);
     }
 
 private:

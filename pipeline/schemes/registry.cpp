@@ -43,6 +43,16 @@ Scheme const& find_scheme(std::string_view name)
     throw Error("scheme '" + std::string(name) + "' is not known; there is " + known);
 }
 
+void check_curvature(SchemeInfo const& info)
+{
+    if (info.no_curvature.empty()) return;
+    std::string others;
+    for (auto const& s : schemes())
+        if (s->info().no_curvature.empty()) others += (others.empty() ? "" : ", ") + s->info().name;
+    throw Error(info.name + " has no curvature to show: " + info.no_curvature +
+                "; schemes that have it: " + others);
+}
+
 namespace {
 
 std::string counted(std::size_t n, char const* one, char const* more)

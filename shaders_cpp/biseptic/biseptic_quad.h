@@ -6,6 +6,7 @@
 #pragma once
 
 #include "shaders_cpp/bernstein.h"
+#include "shaders_cpp/bezier.h"
 
 namespace tessemu {
 
@@ -18,8 +19,21 @@ inline constexpr int kBisepticDegree = 7, kBisepticSide = kBisepticDegree + 1;
 template <class T, class Net> constexpr TangentFrame<T> biseptic_quad(Net const& net, T u, T v)
 {
     Routine<T> const here("biseptic_quad");
-    BernsteinBasis<kBisepticDegree, T> const U(u), V(v);
-    return tensor_product<T>(net, U, V);
+    return tensor_product<T, BernsteinBasis<kBisepticDegree, T>>(net, u, v);
+}
+
+/// The same with second derivatives, all by u and v themselves.
+template <class T, class Net>
+constexpr SecondOrderFrame<T> biseptic_second_order(Net const& net, T u, T v)
+{
+    Routine<T> const here("biseptic_second_order");
+    SecondOrderFrame<T> s =
+        tensor_product<T, SecondOrderBernsteinBasis<kBisepticDegree, T>>(net, u, v);
+    T const first(kBisepticDegree), both(kBisepticDegree * kBisepticDegree),
+        second(kBisepticDegree * (kBisepticDegree - 1));
+    s.du = first * s.du, s.dv = first * s.dv;
+    s.duu = second * s.duu, s.duv = both * s.duv, s.dvv = second * s.dvv;
+    return s;
 }
 
 /// A spoke, and the normal's direction there.

@@ -23,11 +23,22 @@ struct BsplineRowsInside : CubicEdges<4> {
     template <class T>
     static constexpr TangentFrame<T> evaluate(auto const& patch, DomainInput<T> const& in, bool)
     {
-        struct Net {
-            decltype(patch) of;
-            constexpr auto operator[](int i) const { return of[12 + i]; }
-        };
-        return bspline_quad<T>(Net{patch}, in.u, in.v);
+        return bspline_quad<T>(net_of(patch), in.u, in.v);
+    }
+    template <class T>
+    static constexpr SecondOrderFrame<T> second_order(auto const& patch, DomainInput<T> const& in)
+    {
+        return BsplineQuadInside::second_order<T>(net_of(patch), in);
+    }
+
+private:
+    template <class Patch> struct Net {
+        Patch const& of;
+        constexpr auto operator[](int i) const { return of[12 + i]; }
+    };
+    template <class Patch> static constexpr Net<Patch> net_of(Patch const& patch)
+    {
+        return {patch};
     }
 };
 using BsplineRowsDomainShader = WatertightPatch<BsplineRowsInside>;

@@ -37,6 +37,13 @@ struct StamPointsInside {
         return stam_quad<T>(
             tables, [&](int i) { return patch[i].position; }, in.u, in.v);
     }
+    template <class T>
+    constexpr SecondOrderFrame<T> second_order(ControlPoints<ControlVertex<T>> const& patch,
+                                               DomainInput<T> const& in) const
+    {
+        return stam_second_order<T>(
+            tables, [&](int i) { return patch[i].position; }, in.u, in.v);
+    }
 };
 
 /// The net in eigen space from a buffer, which StamProjectionShader filled.
@@ -58,21 +65,28 @@ struct StamBufferInside {
     /// Of any patch of the draw.
     template <class T> constexpr TangentFrame<T> of_patch(std::int32_t patch, T u, T v) const
     {
-        std::int32_t const first = patch * tables.functions;
-        return stam_quad<T>(
-            tables,
-            [&](int i) -> float3<T> {
-                std::int32_t const at = 3 * (first + i);
-                return {load<T>(projected, at), load<T>(projected, at + 1),
-                        load<T>(projected, at + 2)};
-            },
-            u, v);
+        return stam_quad<T>(tables, net_of<T>(patch), u, v);
     }
     template <class T>
     constexpr TangentFrame<T> evaluate(ControlPoints<ControlVertex<T>> const&,
                                        DomainInput<T> const& in, bool) const
     {
         return of_patch<T>(in.primitive_id, in.u, in.v);
+    }
+    template <class T>
+    constexpr SecondOrderFrame<T> second_order(ControlPoints<ControlVertex<T>> const&,
+                                               DomainInput<T> const& in) const
+    {
+        return stam_second_order<T>(tables, net_of<T>(in.primitive_id), in.u, in.v);
+    }
+
+private:
+    template <class T> constexpr auto net_of(std::int32_t patch) const
+    {
+        return [this, first = patch * tables.functions](int i) -> float3<T> {
+            std::int32_t const at = 3 * (first + i);
+            return {load<T>(projected, at), load<T>(projected, at + 1), load<T>(projected, at + 2)};
+        };
     }
 };
 
@@ -148,6 +162,14 @@ struct StamSharedDomainShader {
                 s);
         return when(
             !(own | of_owner), [&] { return rim(in.u, in.v); }, s);
+    }
+
+    /// Of the patch's own net, on a spoke of another patch too.
+    template <class T>
+    SecondOrderFrame<T> second_order(ControlPoints<ControlVertex<T>> const& patch,
+                                     DomainInput<T> const& in) const
+    {
+        return inside.second_order<T>(patch, in);
     }
 
 private:

@@ -48,8 +48,7 @@ template <class F> std::vector<float3<F>> bezier_points(std::vector<glm::dvec3> 
         for (int j = 0; j < kBisepticSide; ++j) {
             F sum[3] = {};
             for (std::size_t p = 0; p < net.size(); ++p)
-                for (int k = 0; k < 3; ++k)
-                    sum[k] += F(basis.weights(i, j)[p]) * F(net[p][k]);
+                for (int k = 0; k < 3; ++k) sum[k] += F(basis.weights(i, j)[p]) * F(net[p][k]);
             out.push_back({sum[0], sum[1], sum[2]});
         }
     return out;
@@ -90,10 +89,10 @@ public:
             double const a = double(i) / n, half = 0.5 / n;
             e_.push_back(place(1, a));
             f_.push_back(place(1.4, a + half));
-            far_.push_back(place(2, a));                     // (2,0)
-            left_.push_back(place(2.2, a + 0.6 * half));      // (2,1)
-            right_.push_back(place(2.2, a - 0.6 * half));     // (2,-1)
-            diagonal_.push_back(place(2.8, a + half));        // (2,2)
+            far_.push_back(place(2, a));                  // (2,0)
+            left_.push_back(place(2.2, a + 0.6 * half));  // (2,1)
+            right_.push_back(place(2.2, a - 0.6 * half)); // (2,-1)
+            diagonal_.push_back(place(2.8, a + half));    // (2,2)
         }
     }
     /// Of patch i, between edges i and i + 1.
@@ -374,7 +373,8 @@ TEST(BisepticQuad, RunTimeCountsAreThePapersAndTheTallys)
                 EXPECT_EQ(flops_loop10(stage(s, "hull_shader").flops),
                           d.patches.size() * 32 * (12 * n + 48))
                     << what;
-                EXPECT_EQ(stage(s, "domain_shader").flops, point * s.pipeline.DSInvocations) << what;
+                EXPECT_EQ(stage(s, "domain_shader").flops, point * s.pipeline.DSInvocations)
+                    << what;
                 for (FetchStatistics const& f : stage(s, "domain_shader").fetches)
                     if (f.resource == "control_points") {
                         EXPECT_EQ(f.count, 64 * s.pipeline.DSInvocations) << what;

@@ -90,7 +90,7 @@ private:
     DomainShader net_domain_shader(std::size_t, SurfaceSettings const& s) const override
     {
         if (has_shared_edges()) return surface_shader<BisepticRowsDomainShader>(s);
-        return bind_domain_shader(BisepticDomainShader{}, s.machine);
+        return bind_surface(BisepticDomainShader{}, s);
     }
 
     std::vector<BisepticBasis> bases_; // by kind
@@ -100,14 +100,16 @@ class Biseptic final : public Scheme {
 public:
     SchemeInfo info() const override
     {
-        return {"biseptic",
-                "LOOP10",
-                "4.1, 4.3 (after Loop and Schaefer 2008)",
-                "curvature-continuous surface: patches of degree 7 at extraordinary vertices, a "
-                "derived basis; regular quads as bicubics",
-                IsolatedNets::requirements(),
-                IsolatedNets::parameters(),
-                IsolatedNets::watertight_with()};
+        SchemeInfo info{"biseptic",
+                        "LOOP10",
+                        "4.1, 4.3 (after Loop and Schaefer 2008)",
+                        "curvature-continuous surface: patches of degree 7 at extraordinary "
+                        "vertices, a derived basis; regular quads as bicubics",
+                        IsolatedNets::requirements(),
+                        IsolatedNets::parameters(),
+                        IsolatedNets::watertight_with()};
+        info.no_curvature = {};
+        return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
                                      Parameters const& parameters) const override

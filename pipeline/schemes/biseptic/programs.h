@@ -18,6 +18,8 @@ using BisepticRowsHullShader =
 #define TESSEMU_BISEPTIC_PROGRAMS(instantiate, T)                                                  \
     instantiate class DomainProgramOn<BisepticDomainShader, T>;                                    \
     instantiate class DomainProgramOn<BisepticRowsDomainShader, T>;                                \
+    instantiate class DomainProgramOn<CurvedSurface<BisepticDomainShader>, T>;                     \
+    instantiate class DomainProgramOn<CurvedSurface<BisepticRowsDomainShader>, T>;                 \
     instantiate class HullProgramOn<BisepticHullShader, T>;                                        \
     instantiate class HullProgramOn<BisepticRowsHullShader, T>;
 

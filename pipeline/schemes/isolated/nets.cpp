@@ -278,8 +278,8 @@ DomainShader IsolatedNets::domain_shader(std::size_t kind, SurfaceSettings const
         return surface_shader<RegularQuadDomainShader>(s);
     }
     if (kind == kGregoryQuad) return surface_shader<CagedGregoryDomainShader>(s);
-    if (bspline_) return bind_domain_shader(BsplineQuadDomainShader{}, s.machine);
-    return bind_domain_shader(BezierQuadDomainShader{}, s.machine);
+    if (bspline_) return bind_surface(BsplineQuadDomainShader{}, s);
+    return bind_surface(BezierQuadDomainShader{}, s);
 }
 
 } // namespace tessemu

@@ -7,6 +7,7 @@
 
 #include "pipeline/schemes/gregory/programs.h"
 #include "shaders_cpp/bezier_hull_shader.h"
+#include "shaders_cpp/curvature.h"
 #include "shaders_cpp/isolated/domain_shaders.h"
 #include "shaders_cpp/isolated/net_hull_shaders.h"
 
@@ -18,6 +19,9 @@ namespace tessemu {
     instantiate class DomainProgramOn<BsplineRowsDomainShader, T>;                                 \
     instantiate class DomainProgramOn<BsplineQuadDomainShader, T>;                                 \
     instantiate class DomainProgramOn<BezierQuadDomainShader, T>;                                  \
+    instantiate class DomainProgramOn<CurvedSurface<BsplineRowsDomainShader>, T>;                  \
+    instantiate class DomainProgramOn<CurvedSurface<BsplineQuadDomainShader>, T>;                  \
+    instantiate class DomainProgramOn<CurvedSurface<BezierQuadDomainShader>, T>;                   \
     instantiate class HullProgramOn<CagedStencilHullShader<SummedRows<4>>, T>;                     \
     instantiate class HullProgramOn<CagedStencilHullShader<GatheredRows<4>>, T>;                   \
     instantiate class HullProgramOn<BsplineQuadHullShader, T>;                                     \

@@ -15,6 +15,9 @@ namespace tessemu {
     instantiate class DomainProgramOn<StamPointsDomainShader, T>;                                  \
     instantiate class DomainProgramOn<StamBufferDomainShader, T>;                                  \
     instantiate class DomainProgramOn<StamSharedDomainShader, T>;                                  \
+    instantiate class DomainProgramOn<CurvedSurface<StamPointsDomainShader>, T>;                   \
+    instantiate class DomainProgramOn<CurvedSurface<StamBufferDomainShader>, T>;                   \
+    instantiate class DomainProgramOn<CurvedSurface<StamSharedDomainShader>, T>;                   \
     instantiate class HullProgramOn<DenseNetHullShader<SummedRows<4>>, T>;                         \
     instantiate class HullProgramOn<NetHullShader<CornersAlone>, T>;                               \
     instantiate class ComputeProgramOn<StamProjectionShader, T>;

@@ -160,7 +160,7 @@ private:
     }
     DomainShader net_domain_shader(std::size_t kind, SurfaceSettings const& s) const override
     {
-        return bind_domain_shader(StamPointsDomainShader{{valence(kind).tables()}}, s.machine);
+        return bind_surface(StamPointsDomainShader{{valence(kind).tables()}}, s);
     }
     bool reads_positions() const override { return true; } // of nets that are projected
     DomainShader prepared_domain_shader(CommandList& list, VertexSource const& positions,
@@ -182,10 +182,8 @@ private:
             "projection, valence " + std::to_string(v.valence), bind_compute_shader(cs, s.machine),
             groups_for(cs.threads(v.faces.size(), v.functions), cs.kThreads[0])});
         StamBufferInside const inside{v.tables(), {*projected, 2, "projected_nets"}};
-        if (!has_shared_edges())
-            return bind_domain_shader(StamBufferDomainShader{inside}, s.machine);
-        return bind_domain_shader(StamSharedDomainShader{inside, {v.words, 3, "patch_words"}},
-                                  s.machine);
+        if (!has_shared_edges()) return bind_surface(StamBufferDomainShader{inside}, s);
+        return bind_surface(StamSharedDomainShader{inside, {v.words, 3, "patch_words"}}, s);
     }
 
     std::vector<Valence> valences_; // by kind
@@ -204,6 +202,7 @@ public:
                         IsolatedNets::parameters(),
                         IsolatedNets::watertight_with()};
         info.takes.edges = kMostEdges;
+        info.no_curvature = {};
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
