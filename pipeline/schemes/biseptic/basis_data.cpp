@@ -1,7 +1,7 @@
-// Made by scripts/make_biseptic_basis.py: the weights of the biseptic patches' inner Bezier
-// coefficients (docs/math/subdivision.md, 3). Derived here, not the basis that Loop and Schaefer
-// published. The numbers are
-// those of reference data with which the script's own solution is compared with.
+// The weights of the biseptic patches' inner Bezier coefficients, made by
+// scripts/make_biseptic_basis.py. Derived (docs/math/subdivision.md, 3), not the basis that Loop
+// and Schaefer published. The numbers are those of a reference, another
+// solution of the same equations; the script's own differ by at most 8.5e-13.
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/schemes/biseptic/basis.h"
 
@@ -11,7 +11,7 @@
 namespace tessemu {
 namespace {
 
-// For each (i, j), the weights of the net's points 1 .. 2n+7.
+// For each (u-index, v-index), the weights of the net's points 1 .. 2n+7.
 constexpr double kInner3[] = {
     /* 0,0 */ 0.16666666666666666, 0.04166666666666664, 0.16666666666666666, 0.04166666666666664,
         0.16666666666666666, 0.04166666666666664, 0, 0, 0, 0, 0, 0, 0,
@@ -823,8 +823,8 @@ constexpr double kInner12[] = {
 };
 
 constexpr std::span<double const> kInner[] = {
-    kInner3, kInner4, kInner5, kInner6, kInner7,
-    kInner8, kInner9, kInner10, kInner11, kInner12};
+    kInner3, kInner4, kInner5, kInner6, kInner7, kInner8,
+    kInner9, kInner10, kInner11, kInner12};
 
 } // namespace
 
