@@ -8,6 +8,7 @@
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/files.h"
 #include "tests/support/isolated_nets.h"
+#include "tests/support/printed.h"
 #include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -124,6 +125,42 @@ TEST_P(IsolatedNets, AtAVertexOfTwoEdgesAreGregoryPatches)
             warnings += w.find("8 faces at a vertex of 2 edges are Gregory patches") == 0;
         EXPECT_EQ(warnings, 1u);
     }
+}
+
+// The page's table, to the digit.
+TEST_P(IsolatedNets, AsThePaperDrawsItAsManyPointsDifferAsThePageSays)
+{
+    TESSEMU_NEEDS_SHARED("models/bigguy.obj");
+    TESSEMU_NEEDS_SHARED("models/monsterfrog.obj");
+    std::size_t cells_compared = 0;
+    for (auto const& cells :
+         test::table_of("docs/" + std::string(GetParam()) + ".md", "| | spokes | outer edges")) {
+        ASSERT_EQ(cells.size(), 4u);
+        std::string const model = cells[0].substr(0, cells[0].find(',')),
+                          verdict = cells[0].substr(model.size() + 2);
+        WatertightSettings s;
+        s.frame.tess_factor = 7.3f;
+        SchemeOnMesh const on =
+            build(load_model(test::shared("models/" + model + ".obj").string()).mesh);
+        auto const verdicts = checked(*on.patches, s);
+        std::string const& reason =
+            verdicts.at(verdict.substr(0, verdict.size() - 1)).reason; // "positions"
+        char const* const where[] = {"on a spoke", "on an outer edge",
+                                     "at corners and on other edges"};
+        for (std::size_t k = 0; k < 3; ++k) {
+            std::string const& cell = cells[k + 1];
+            std::size_t const of = cell.find(" of ");
+            ASSERT_NE(of, cell.npos);
+            std::string const words =
+                cell.substr(0, of) + " points" + cell.substr(of) + " differ " + where[k];
+            if (cell.substr(0, of) == "0")
+                EXPECT_EQ(reason.find(std::string("differ ") + where[k]), reason.npos) << reason;
+            else
+                EXPECT_NE(reason.find(words), reason.npos) << words << " is not in: " << reason;
+            ++cells_compared;
+        }
+    }
+    EXPECT_EQ(cells_compared, 12u);
 }
 
 // Adaptive factors agree all the same: they follow the cage's edges.
