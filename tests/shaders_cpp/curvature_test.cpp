@@ -6,6 +6,7 @@
 
 #include "shaders_cpp/bezier_hull_shader.h"
 #include "shaders_cpp/stam/stam_domain_shaders.h"
+#include "tests/support/biseptic_evaluation.h"
 #include "tests/support/files.h"
 #include "tests/support/stam_evaluation.h"
 #include "tests/support/vertex_neighbourhood.h"
@@ -200,6 +201,14 @@ PatchesAround stam_around(int n, unsigned seed)
     return [=](int j, double u, double v) { return patches[std::size_t(j)].second_order_at(u, v); };
 }
 
+PatchesAround biseptic_around(int n, unsigned seed)
+{
+    std::vector<test::BisepticEvaluation<double>> patches;
+    test::VertexNeighbourhood const around(n, seed);
+    for (int j = 0; j < n; ++j) patches.emplace_back(n, around.net(j));
+    return [=](int j, double u, double v) { return patches[std::size_t(j)].second_order_at(u, v); };
+}
+
 constexpr int kFirstRing = 2, kLastRing = 10;
 
 /// max - min of the mean curvature over max(u, v) = 2^-k of all patches, k = 2 to 10.
@@ -260,6 +269,25 @@ TEST(CurvatureAtAVertex, OfStamsPatchesSpreadsMoreAndMoreForMoreThanFourEdges)
         double const rate = size[3] / (size[1] * size[1]);
         EXPECT_GT(rate, 1) << n;
         EXPECT_NEAR(s[last] / s[last - 1], rate, 0.03 * rate) << n;
+    }
+}
+
+// All patches have one curvature at the vertex and a polynomial's away from it, so towards the vertex
+// the spread falls as the ring's size, but for the next term: at the last ring by 1/2. The first
+// rings may fall less, for that term.
+TEST(CurvatureAtAVertex, OfBisepticPatchesIsOne)
+{
+    for (int n = 3; n <= 12; ++n) {
+        std::vector<double> const s = spreads(n, biseptic_around(n, 20261126));
+        std::size_t const last = s.size() - 1;
+        for (std::size_t k = 1; k <= last; ++k)
+            EXPECT_LT(s[k], s[k - 1]) << n << ", ring " << k + kFirstRing;
+        EXPECT_LT(s[last], s[0] / 64) << n;
+        EXPECT_NEAR(s[last] / s[last - 1], 0.5, 0.02) << n;
+        if (n > 4) {
+            double const stams = spreads(n, stam_around(n, 20261126)).back();
+            EXPECT_LT(s[last], stams / 100) << n;
+        }
     }
 }
 

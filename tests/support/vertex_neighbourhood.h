@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <random>
 #include <vector>
 
@@ -18,18 +19,22 @@ public:
     using Point = std::array<double, 3>;
 
     /// In general position: a regular star on a saddle, each coordinate moved by up to 0.04.
-    VertexNeighbourhood(int valence, unsigned seed) : n_(std::size_t(valence))
+    VertexNeighbourhood(int valence, unsigned seed)
+        : VertexNeighbourhood(valence, [random = std::mt19937(seed)](double x, double y) mutable {
+              auto const moved = [&] {
+                  return 0.04 * (double(random()) / double(std::mt19937::max()) * 2 - 1);
+              };
+              double const z = 0.3 * x * x + 0.2 * x * y - 0.2 * y * y;
+              double const dx = moved(), dy = moved(), dz = moved();
+              return Point{x + dx, y + dy, z + dz};
+          })
     {
-        std::mt19937 random(seed);
-        auto const moved = [&] {
-            return 0.04 * (double(random()) / double(std::mt19937::max()) * 2 - 1);
-        };
-        auto const point = [&](double x, double y) -> Point {
-            double const z = 0.3 * x * x + 0.2 * x * y - 0.2 * y * y;
-            double const dx = moved(), dy = moved(), dz = moved();
-            return {x + dx, y + dy, z + dz};
-        };
-        center_ = point(0, 0);
+    }
+    /// \param point  (x, y) of a regular star to where its point lies
+    VertexNeighbourhood(int valence, std::function<Point(double, double)> point)
+        : n_(std::size_t(valence)),
+          center_(point(0, 0))
+    {
         constexpr int places[kPoints][2] = {{1, 0}, {1, 1}, {2, 0}, {2, 1}, {2, 2}, {1, 2}};
         double const turn = 2 * std::acos(-1.0) / double(n_);
         for (std::size_t j = 0; j < n_; ++j)

@@ -44,32 +44,17 @@ public:
     int points() const { return 2 * n_ + 8; }
     int e(int i) const { return 1 + 2 * modulo(i); }
     int f(int i) const { return 2 + 2 * modulo(i); }
-    /// A permutation of all points: those of the ring by ring(e_i or f_i, i), others by `outer`,
-    /// which maps (2,2) (2,1) (2,0) (2,-1) (1,2) (0,2) (-1,2) by their number in this list.
-    template <class Edge, class Face>
-    std::vector<int> permutation(Edge const& edge, Face const& face,
-                                 std::array<int, 7> const& outer) const
+    /// Each point's mirror image in u = v.
+    std::vector<int> mirrored() const
     {
         std::vector<int> out(std::size_t(points()), 0);
         for (int i = 0; i < n_; ++i) {
-            out[std::size_t(e(i))] = e(edge(i));
-            out[std::size_t(f(i))] = f(face(i));
+            out[std::size_t(e(i))] = e(1 - i);
+            out[std::size_t(f(i))] = f(-i);
         }
-        for (int k = 0; k < 7; ++k)
-            out[std::size_t(2 * n_ + 1 + k)] = 2 * n_ + 1 + outer[std::size_t(k)];
+        constexpr int outer[] = {0, 4, 5, 6, 1, 2, 3}; // (2,1) and (1,2) and so on
+        for (int k = 0; k < 7; ++k) out[std::size_t(2 * n_ + 1 + k)] = 2 * n_ + 1 + outer[k];
         return out;
-    }
-    /// In u = v.
-    std::vector<int> mirrored() const
-    {
-        return permutation([](int i) { return 1 - i; }, [](int i) { return -i; },
-                           {0, 4, 5, 6, 1, 2, 3});
-    }
-    /// In the spoke to e_0, of points that it depends on.
-    std::vector<int> mirrored_in_spoke() const
-    {
-        return permutation([](int i) { return -i; }, [](int i) { return -i - 1; },
-                           {0, 3, 2, 1, 4, 5, 6});
     }
 
 private:
@@ -102,28 +87,18 @@ BisepticBasis::BisepticBasis(int valence) : valence_(valence)
                             kAtOne[i - kInner][x] * raised[std::size_t(j)][std::size_t(y + 1)];
             }
         }
-    // What a symmetry maps to itself is symmetric but for rounding.
-    auto const symmetric = [&](double* w, std::vector<int> const& mirror) {
+    std::vector<int> const mirrored = net.mirrored();
+    for (int i = kInner; i < kSide; ++i) // as the inner ones are
         for (std::size_t p = 0; p < size; ++p)
-            if (auto const q = std::size_t(mirror[p]); p < q) w[p] = w[q] = (w[p] + w[q]) / 2;
-    };
-    std::vector<int> const diagonal = net.mirrored(), spoke = net.mirrored_in_spoke();
-    for (int i = 1; i < kSide; ++i) {
-        symmetric(row(i, i), diagonal);
-        symmetric(row(i, 0), spoke);
-    }
-    double const n = valence; // point (0,0), which all symmetries map to itself, is the limit
-    for (int i = 0; i < valence; ++i) {
-        row(0, 0)[net.e(i)] = 4 / (n * (n + 5));
-        row(0, 0)[net.f(i)] = 1 / (n * (n + 5));
-    }
+            if (auto const q = std::size_t(mirrored[p]); p < q)
+                row(i, i)[p] = row(i, i)[q] = (row(i, i)[p] + row(i, i)[q]) / 2;
     for (int i = 0; i < kSide; ++i)
         for (int j = 0; j <= i; ++j) {
             double* const w = row(i, j);
             double others = 0;
             for (std::size_t p = 1; p < size; ++p) others += w[p];
             w[0] = 1 - others;
-            for (std::size_t p = 0; p < size; ++p) row(j, i)[std::size_t(diagonal[p])] = w[p];
+            for (std::size_t p = 0; p < size; ++p) row(j, i)[std::size_t(mirrored[p])] = w[p];
         }
 }
 
