@@ -8,6 +8,7 @@
 #include "shaders_cpp/stam/stam_domain_shaders.h"
 #include "tests/support/biseptic_evaluation.h"
 #include "tests/support/files.h"
+#include "tests/support/printed.h"
 #include "tests/support/stam_evaluation.h"
 #include "tests/support/vertex_neighbourhood.h"
 
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <random>
 
 namespace tessemu {
@@ -289,6 +291,28 @@ TEST(CurvatureAtAVertex, OfBisepticPatchesIsOne)
             EXPECT_LT(s[last], stams / 100) << n;
         }
     }
+}
+
+TEST(CurvatureAtAVertex, SpreadsAsThePageSays)
+{
+    auto const rows = test::table_of("docs/smoothness.md", "| n | 3 | 4 |");
+    std::size_t compared = 0;
+    for (int n = 3; n <= 12; ++n) {
+        std::vector<double> const stam = spreads(n, stam_around(n, 20261126)),
+                                  biseptic = spreads(n, biseptic_around(n, 20261126));
+        std::map<std::string, double> const values{{"`stam`: spread at 2^-2", stam.front()},
+                                                   {"`stam`: at 2^-10", stam.back()},
+                                                   {"`biseptic`: spread at 2^-2", biseptic.front()},
+                                                   {"`biseptic`: at 2^-10", biseptic.back()}};
+        for (auto const& cells : rows) {
+            auto const value = values.find(cells.at(0));
+            if (value == values.end()) continue;
+            EXPECT_TRUE(test::printed(cells.at(std::size_t(n - 2))).rounds_from(value->second))
+                << cells[0] << ", n = " << n << ": " << value->second;
+            ++compared;
+        }
+    }
+    EXPECT_EQ(compared, 40u);
 }
 
 } // namespace
