@@ -186,6 +186,7 @@ TEST(Determinism, TheCheckingMachineHasTheFastOnesBitsAndCountsInEveryStageOfEve
                         s.displacement = map;
                         if (moved) s.pose = pose;
                         v.set(s);
+                        if (map && s.view == View::Curvature) continue; // which is refused
                         SCOPED_TRACE(scheme->info().name + " on " + cage.name + ", " + v.name +
                                      (map ? ", displaced" : "") + (moved ? ", in a pose" : ""));
                         expect_equal_on_all_machines(*m.patches, s, stages);
