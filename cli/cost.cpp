@@ -5,9 +5,9 @@
 
 #include "cli/job.h"
 #include "cli/verbs.h"
-#include "io/figure.h"
 #include "io/gpu_file.h"
 #include "io/image_writer.h"
+#include "io/plot.h"
 
 #include <fmt/format.h>
 
@@ -66,7 +66,7 @@ int run(CostRequest o)
                 {s.stage, s.operations / (16 * s.fetches), s.operations / s.seconds()});
     }
     summary.sources.assign(gpu.sources.begin(), gpu.sources.end());
-    if (picture) write_roofline(roofline, *picture);
+    if (picture) write_plots(plot_of(roofline), *picture);
     out.finish([&] { return cost_report(job.header, summary); }, cost_table(summary));
     return 0;
 }
