@@ -76,11 +76,17 @@ void line(ImageBuf& image, ROI const& clip, float const (&color)[4], double widt
     });
 }
 
+// Of marker and line: where curves run on each other, those below can be seen at both sides.
+double shrunk(std::size_t which)
+{
+    return 1 - 0.13 * double(std::min<std::size_t>(which, 4));
+}
+
 // Disc, square, triangle, diamond, downward triangle: in turn.
 void marker(ImageBuf& image, std::size_t which, double cx, double cy)
 {
-    constexpr double r = 4.5;
-    auto const triangle = [](double x, double y) { // an edge below, a corner on top
+    double const r = 5.4 * shrunk(which);
+    auto const triangle = [r](double x, double y) { // an edge below, a corner on top
         return std::max(y - 0.6 * r, 0.88 * std::abs(x) - 0.47 * y - 0.62 * r);
     };
     ROI const near(int(cx) - 8, int(cx) + 9, int(cy) - 8, int(cy) + 9);
@@ -176,7 +182,7 @@ private:
         for (std::size_t i = 1; i < s.points.size(); ++i) {
             PlotPoint const &a = s.points[i - 1], &b = s.points[i];
             line(image_, frame_, guide ? kGuide : kColors[place(s) % std::size(kColors)],
-                 guide ? 1.5 : 1.8, x(a.x), y(a.y), x(b.x), y(b.y));
+                 guide ? 1.5 : 2.6 * shrunk(place(s)), x(a.x), y(a.y), x(b.x), y(b.y));
         }
     }
     void markers(PlotSeries const& s) const
@@ -234,7 +240,7 @@ void draw_legend(ImageBuf& image, PlotLayout const& layout)
     for (std::size_t i = 0; i < layout.names().size(); ++i) {
         std::string const& name = layout.names()[i];
         ROI const all(0, layout.width(), 0, layout.height());
-        line(image, all, kColors[i % std::size(kColors)], 1.8, x, y, x + kSample, y);
+        line(image, all, kColors[i % std::size(kColors)], 2.6 * shrunk(i), x, y, x + kSample, y);
         marker(image, i, x + kSample / 2.0, y);
         write_text(image, x + kSample + 6, y, name, Align::Left, kText);
         x += kSample + 6 + width_of(name) + kBetween;

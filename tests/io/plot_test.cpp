@@ -127,13 +127,13 @@ TEST(Plot, DrawsAMarkerAtEachPointAndALineBetweenThem)
     Drawn const d(sheet_of({{"a", {{"s", {{1, 10}, {16, 1000}}}}}}));
     EXPECT_TRUE(is_blue(d.at(0, 1, 10)));
     EXPECT_TRUE(is_blue(d.at(0, 16, 1000)));
-    // A line of 1.8 pixels covers half of a pixel that it passes through, at least.
+    // A line of 2.6 pixels covers half of a pixel that it passes through, at least.
     EXPECT_LE(d.at(0, 4, 100)[0], 0.5f) << "the middle of the line";
     EXPECT_TRUE(is_paper(d.at(0, 2, 300)));
     // A marker is wider than the line.
     double const x = d.layout().x(0, 16), y = d.layout().y(0, 1000);
     EXPECT_TRUE(is_blue(d.pixel(x, y + 3)));
-    EXPECT_TRUE(is_paper(d.pixel(x, y + 7)));
+    EXPECT_TRUE(is_paper(d.pixel(x, y + 8)));
 }
 
 TEST(Plot, SeriesDifferInColourAndKeepItOnAllPanels)
