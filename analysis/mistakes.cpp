@@ -103,8 +103,11 @@ public:
     }
     ControlVertex<float> operator[](int i) const
     {
-        if (points_ == EdgePoints::ByName)
-            return load_record<ControlVertex<float>>(memory_ + i * floats_);
+        if (points_ == EdgePoints::ByName) {
+            int const packed = floats_ / 3; // into a record
+            return load_record<ControlVertex<float>>(memory_ + i / packed * floats_ +
+                                                     i % packed * 3);
+        }
         auto const corner = load_record<CornerVectors<CornerLayout::kEMinus + 1, float>>(
             memory_ + i % sides_ * floats_);
         return {corner.vectors[std::size_t(i / sides_)]};

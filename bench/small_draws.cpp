@@ -39,7 +39,7 @@ struct BicubicVertexShader {
             std::array<float, 3> const& p = control_points[std::size_t(i)][std::size_t(j)];
             return {T(p[0]), T(p[1]), T(p[2])};
         };
-        TangentFrame<T> const s = bicubic<T>(point, vertex.at.x, vertex.at.y);
+        TangentFrame<T> const s = tensor_product<T>(point, vertex.at.x, vertex.at.y);
         return {transform(view_projection, s.position), unit_or_zero(cross(s.du, s.dv))};
     }
 };

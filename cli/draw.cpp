@@ -1,6 +1,7 @@
 // draw: pictures of a surface and what every stage did.
 //
 // SPDX-License-Identifier: Apache-2.0
+#include "analysis/curvature.h"
 #include "analysis/error_view.h"
 #include "cli/job.h"
 #include "cli/verbs.h"
@@ -34,7 +35,10 @@ struct DrawRequest {
     RunRequest run;
     std::string output;
     ViewRequest view;
-    std::optional<ErrorMax> error_max; ///< none: from the errors
+    std::optional<ErrorMax> error_max;   ///< none: from the errors
+    std::optional<double> curvature_max; ///< 1/length of the file; none: from the surface
+
+    bool shows(View v) const { return view.shows == ViewRequest::Shows::Surface && view.view == v; }
     int level = 0;
     int samples = 1;
     CullMode cull = CullMode::None;
@@ -68,6 +72,14 @@ std::optional<ErrorMax> parse_error_max(std::string const& text, std::string con
     ErrorMax const out{finite_number(parts[0], option), finite_number(parts[1], option)};
     if (!(out.position > 0 && out.angle > 0))
         throw Error(option + " is '" + text + "', both must be above 0");
+    return out;
+}
+
+std::optional<double> parse_curvature_max(std::string const& text, std::string const& option)
+{
+    if (text == "auto") return {};
+    double const out = finite_number(text, option);
+    if (!(out > 0)) throw Error(option + " is '" + text + "', it must be auto or above 0");
     return out;
 }
 
@@ -145,6 +157,37 @@ int run_error_view(DrawRequest const& o, Job& job, OutputFile* picture, RunOutpu
     return 0;
 }
 
+// What is red, of all frames: 1/length of the file.
+double set_curvature_range(DrawRequest const& o, Job& job, ThreadPool const& threads)
+{
+    double range = 0; // in the mesh
+    if (o.curvature_max) {
+        range = *o.curvature_max * job.placement.length_to_file(1);
+        if (!(range > 1e-30 && range < 1e30))
+            throw Error(fmt::format("--curvature-max is {}, for this model it must be {:g} to {:g}",
+                                    *o.curvature_max, job.placement.length_from_file(1e-30),
+                                    job.placement.length_from_file(1e30)));
+    } else {
+        FrameSettings settings = job.frame;
+        for (FramePose const& p : job.poses) {
+            settings.pose = p.pose;
+            range = std::max(range, curvature_range(job.patches(), settings, threads));
+        }
+    }
+    job.frame.curvature_max = float(range);
+    return range * job.placement.length_from_file(1);
+}
+
+std::string curvature_legend(double range, PatchMesh const& patches)
+{
+    std::string out = fmt::format(
+        "mean curvature, 1/unit of length: blue {:.4g} and below, white 0, red {:.4g} and above\n",
+        -range, range);
+    if (std::size_t const n = patches_without_curvature(patches))
+        out += fmt::format("{} patch{} without second derivatives: grey\n", n, n == 1 ? "" : "es");
+    return out;
+}
+
 // A camera that its user placed and that sees nothing is a mistake; else the picture may be so.
 void expect_something(bool covered, DrawRequest const& o, Job& job)
 {
@@ -162,6 +205,7 @@ int run(DrawRequest const& o)
     std::vector<OutputFile*> const pictures = pictures_of(o, out);
     OutputFile* const picture = pictures.empty() ? nullptr : pictures[0];
     bool const cage = o.view.shows == ViewRequest::Shows::Cage;
+    if (o.shows(View::Curvature)) check_curvature(o.surface.model.scheme->info());
     keep_inputs(out, o.surface);
     Job job = prepare(o.surface, "draw", cage ? refine_for_scheme : build_scheme);
     set_picture(job, o.picture, o.surface);
@@ -190,6 +234,13 @@ int run(DrawRequest const& o)
     ThreadPool const threads(o.run.threads);
     ProgressBar bar;
     Stopwatch const clock;
+    std::string legend;
+    if (o.shows(View::Valence)) legend = valence_legend(job.patches()) + "\n";
+    if (o.shows(View::Curvature)) {
+        double const range = set_curvature_range(o, job, threads);
+        c.emplace_back("curvature_max", range);
+        legend = curvature_legend(range, job.patches()) + "\n";
+    }
     Frame frame(f);
     std::vector<SequenceFrame> sequence;
     bool covered = false;
@@ -214,8 +265,6 @@ int run(DrawRequest const& o)
     bar.clear();
     expect_something(covered, o, job);
     add_run(job.header, job, threads, clock.seconds());
-    std::string const legend =
-        !cage && f.view == View::Valence ? valence_legend(job.patches()) + "\n" : std::string();
     if (!sequence.empty()) {
         out.finish([&] { return sequence_report(job.header, sequence); },
                    legend + sequence_table(sequence));
@@ -246,19 +295,26 @@ void add_draw(CommandLine& program)
         "  tessemu draw cage.obj --camera from=1,0.5,0 --size 1920x1080 -o side.exr\n"
         "  tessemu draw jug --tess 32 --displace studs -o studs.png\n"
         "  tessemu draw jug --animate sway --frames 12 -o sway.png --json sway.json\n"
-        "  tessemu draw cage.obj --view error -o error.png");
+        "  tessemu draw cage.obj --view error -o error.png\n"
+        "  tessemu draw cage.obj --scheme stam --tess 16 --view curvature -o curvature.png");
     verb.option("-o", o->output, output_path, "picture, .png or .exr; '-': PNG on standard output");
     add_options(verb, o->picture);
     verb.option(
         "--view", o->view, view_parser(),
         "lit, normals, patches, depth, wire; valence: patches by that of their extraordinary "
-        "vertex; coverage: how often a pixel is covered, before depth; cage: the control mesh; "
-        "error: against the Catmull-Clark limit surface",
+        "vertex; zebra: reflection lines; curvature: mean curvature, of schemes that have second "
+        "derivatives; coverage: how often a pixel is covered, before depth; cage: the control "
+        "mesh; error: against the Catmull-Clark limit surface",
         "lit");
     verb.option("--error-max", o->error_max, parse_error_max,
                 "of the error view: POSITION,ANGLE that are red, in diagonals and radians; auto: "
                 "what 99 % of the area stays below",
                 "auto");
+    verb.option(
+        "--curvature-max", o->curvature_max, parse_curvature_max,
+        "of the curvature view: what is red, 1/unit of length, and blue its negative; auto: "
+        "what 99 % of the area stays below in size",
+        "auto");
     add_level(verb, o->level, "of the error view: 2^level segments an edge, 1 to 6");
     verb.option("--frames", o->surface.animate.frames, whole(1, 10000),
                 "pictures of one period of the motion, numbered: NAME_0000.png and so on", "1");
@@ -275,6 +331,7 @@ void add_draw(CommandLine& program)
     verb.runs([o, &verb] {
         using Shows = ViewRequest::Shows;
         if (o->view.shows != Shows::Error) verb.needs({"--error-max", "--level"}, "--view error");
+        if (!o->shows(View::Curvature)) verb.needs({"--curvature-max"}, "--view curvature");
         // No error: one list of options may serve several views.
         if (o->view.shows == Shows::Error)
             warn_of_unused(verb, "--view error",

@@ -4,6 +4,8 @@
 #include "pipeline/commands/direct3d10.h"
 #include "pipeline/patch_valences.h"
 #include "shaders_cpp/pixel/bumped_view.h"
+#include "shaders_cpp/pixel/curvature_view.h"
+#include "shaders_cpp/pixel/zebra_view.h"
 
 #include <glm/geometric.hpp>
 
@@ -20,6 +22,10 @@ std::string_view name_of(View view)
         return "patches";
     case View::Valence:
         return "valence";
+    case View::Zebra:
+        return "zebra";
+    case View::Curvature:
+        return "curvature";
     case View::Depth:
         return "depth";
     case View::Wire:
@@ -37,12 +43,11 @@ std::optional<View> view_from_name(std::string_view name)
 }
 
 namespace {
-template <class Shader>
-PixelShader on_surface(Shader const& view, Displacement const* displacement, Machine const& machine)
+template <class Shader> PixelShader on_surface(Shader const& view, FrameSettings const& s)
 {
-    if (!displacement) return bind_pixel_shader(view, machine);
+    if (!s.displacement) return bind_pixel_shader(view, s.machine);
     return bind_pixel_shader(
-        BumpedView<Shader>{view, displacement->height_map(), displacement->scale()}, machine);
+        BumpedView<Shader>{view, s.displacement->height_map(), s.displacement->scale()}, s.machine);
 }
 
 std::array<float, 3> as_array(glm::vec3 v)
@@ -56,13 +61,28 @@ glm::vec3 key_light(Camera const& camera)
     return glm::normalize(-0.5f * camera.right() + 0.62f * camera.true_up() +
                           0.6f * camera.backward());
 }
+
+// From the surface to the viewer: the picture's plane lies `focal` half heights before the eye.
+ZebraPixelShader zebra(FrameSettings const& s)
+{
+    Camera const& c = s.camera;
+    float const pixel = 2 / (c.focal * float(s.height)); // at a distance of 1
+    glm::vec3 const right = c.right(), up = c.true_up();
+    ZebraPixelShader out;
+    out.v0 =
+        as_array(c.backward() + 0.5f * pixel * (float(s.width) * right - float(s.height) * up));
+    out.vx = as_array(-pixel * right);
+    out.vy = as_array(pixel * up);
+    out.axis = as_array(up);
+    return out;
+}
 } // namespace
 
-PixelShader make_view(View view, PatchKind const& kind, Camera const& camera,
-                      Displacement const* displacement, Machine const& machine)
+PixelShader make_view(Draw const& draw, FrameSettings const& settings)
 {
+    Camera const& camera = settings.camera;
     glm::vec3 const light = key_light(camera);
-    switch (view) {
+    switch (settings.view) {
     case View::Lit:
     case View::Wire:
     case View::Coverage: {
@@ -70,21 +90,35 @@ PixelShader make_view(View view, PatchKind const& kind, Camera const& camera,
         s.light = as_array(light);
         s.half = as_array(glm::normalize(light + camera.backward()));
         s.up = as_array(camera.true_up());
-        return on_surface(s, displacement, machine);
+        return on_surface(s, settings);
     }
     case View::Normals:
-        return on_surface(NormalPixelShader{}, displacement, machine);
+        return on_surface(NormalPixelShader{}, settings);
+    case View::Zebra:
+        return on_surface(zebra(settings), settings);
+    case View::Curvature: {
+        if (draw.has_curvature()) {
+            CurvaturePixelShader s;
+            s.scale = settings.curvature_max > 0 ? 1 / settings.curvature_max : 0;
+            s.light = as_array(light);
+            return bind_pixel_shader(s, settings.machine);
+        }
+        PatchPixelShader s; // told apart, in grey
+        s.color = {0.5f, 0.5f, 0.5f};
+        s.light = as_array(light);
+        return bind_pixel_shader(s, settings.machine);
+    }
     case View::Patches: {
         PatchPixelShader s;
-        s.color = color_of(kind.patch_class);
+        s.color = color_of(draw.kind.patch_class);
         s.light = as_array(light);
-        return on_surface(s, displacement, machine);
+        return on_surface(s, settings);
     }
     default: {
         DepthPixelShader s;
         s.near_w = camera.near_plane;
         s.far_w = camera.far_plane;
-        return bind_pixel_shader(s, machine);
+        return bind_pixel_shader(s, settings.machine);
     }
     }
 }
@@ -124,6 +158,7 @@ SurfaceSettings surface_settings(FrameSettings const& s)
 {
     SurfaceSettings out = s;
     out.adaptive_rule = tess_factor_rule(s.adaptive, s.camera, s.height, s.tess_factor);
+    out.curvature = s.curvature || s.view == View::Curvature;
     return out;
 }
 
@@ -137,6 +172,8 @@ SurfaceSettings seen_surface(FrameSettings const& s)
 CommandList frame_commands(PatchMesh const& mesh, FrameSettings const& s,
                            SurfaceSettings const& surface)
 {
+    if (surface.curvature && surface.displacement)
+        throw Error("curvature is that of the smooth surface: it is not shown of a displaced one");
     CommandList list = mesh.commands(surface);
     return s.direct3d10 ? instanced(std::move(list), surface) : list;
 }
@@ -187,7 +224,7 @@ void show_valences(CommandList& list, RefinedMesh const& mesh, FrameSettings con
             colors->insert(colors->end(), color.begin(), color.end());
         }
         view.colors = {*colors, PatchColorPixelShader::kSlot, "patch_colors"};
-        d.pipeline.pixel_shader = on_surface(view, s.displacement.get(), s.machine);
+        d.pipeline.pixel_shader = on_surface(view, s);
         list.memory.push_back(colors);
     });
 }
@@ -225,10 +262,7 @@ void draw_frame(PatchMesh const& mesh, FrameSettings const& s, ThreadPool const&
     if (s.view == View::Valence)
         show_valences(list, mesh.mesh(), s);
     else
-        list.for_each_surface_draw([&](Draw& d) {
-            d.pipeline.pixel_shader =
-                make_view(s.view, d.kind, s.camera, s.displacement.get(), s.machine);
-        });
+        list.for_each_surface_draw([&](Draw& d) { d.pipeline.pixel_shader = make_view(d, s); });
     if (s.view == View::Wire) add_wires(list, s, raster.rasterizer);
     ListStatistics statistics =
         run_commands(list, threads, {&raster, {}, s.vertex_cache, &frame.memory, progress});

@@ -11,16 +11,12 @@
 
 namespace tessemu {
 
-enum class View { Lit, Normals, Patches, Valence, Depth, Wire, Coverage };
+enum class View { Lit, Normals, Patches, Valence, Zebra, Curvature, Depth, Wire, Coverage };
 std::string_view name_of(View view);
 std::optional<View> view_from_name(std::string_view name);
-inline constexpr View kViews[] = {View::Lit,   View::Normals, View::Patches, View::Valence,
-                                  View::Depth, View::Wire,    View::Coverage};
-
-/// The pixel shader of a view; on a displaced surface normals follow the height map. That of the
-/// valence view depends on the patches: draw_frame makes it.
-PixelShader make_view(View view, PatchKind const& kind, Camera const& camera,
-                      Displacement const* displacement, Machine const& machine);
+inline constexpr View kViews[] = {View::Lit,     View::Normals, View::Patches,
+                                  View::Valence, View::Zebra,   View::Curvature,
+                                  View::Depth,   View::Wire,    View::Coverage};
 
 /// The colour of a class of patches in pictures.
 std::array<float, 3> color_of(PatchClass patch_class);
@@ -47,15 +43,20 @@ struct FrameSettings : SurfaceSettings {
     AdaptiveFactors adaptive; ///< instead of the uniform factor
     bool direct3d10 = false;  ///< by geometry shader and instances, see direct3d10.h
     VertexCacheModel vertex_cache;
+    float curvature_max = 1; ///< of the curvature view: what is red, 1/length in object space
 };
 
-/// The surface of a frame in object space: its adaptive rule from the camera, the identity
-/// transform.
+/// The pixel shader of the settings' view for a draw of the surface; on a displaced surface normals
+/// follow the height map. That of the valence view depends on the patches: draw_frame makes it.
+PixelShader make_view(Draw const& draw, FrameSettings const& settings);
+
+/// The surface of a frame in object space: its adaptive rule from the camera, curvature if the view
+/// shows it, the identity transform.
 SurfaceSettings surface_settings(FrameSettings const& settings);
 /// The same, through the camera.
 SurfaceSettings seen_surface(FrameSettings const& settings);
 /// The commands of a mesh for a frame, without pixel shaders; by the Direct3D 10 path where asked
-/// for.
+/// for. Throws Error for the curvature of a displaced surface.
 CommandList frame_commands(PatchMesh const& mesh, FrameSettings const& settings,
                            SurfaceSettings const& surface);
 
@@ -76,7 +77,8 @@ struct Frame {
 /// Clears the frame and runs all commands in order. The frame was made for the same size, format
 /// and samples. The wire view draws the surface first and then its edges over it, and counts both;
 /// the valence view paints patches by PatchValence, and takes no Direct3D 10 path, whose pixels do
-/// not know their patch: throws Error;
+/// not know their patch: throws Error; the curvature view shows draws without a curvature in grey,
+/// and throws Error for a displaced surface;
 /// the coverage view paints how often a pixel's first sample was covered: grey not at all, blue to
 /// white an even number of times, orange an odd number.
 void draw_frame(PatchMesh const& mesh, FrameSettings const& settings, ThreadPool const& threads,

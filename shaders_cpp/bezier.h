@@ -5,6 +5,8 @@
 
 #include "shaders_cpp/records.h"
 
+#include <utility>
+
 namespace tessemu {
 
 /// Cubic Bernstein polynomials and their derivatives at t.
@@ -32,22 +34,60 @@ template <class T> struct CubicBasis {
     }
 };
 
-/// Bicubic Bezier patch: S = B3(u) b B3(v).
-///
-/// \tparam Basis  Bernstein's, or another one of four functions and their derivatives
-/// \param net     net(i, j): control point i along u, j along v; asked for once each
-/// \returns       position and the derivatives along u and v
-/// \cost          132 mul and twice the basis: 156 mul (LOOP10's 162 with the cross product)
-template <class T, class Basis = CubicBasis<T>, class Net>
-constexpr TangentFrame<T> bicubic(Net const& net, T u, T v)
+/// The same with second derivatives.
+template <class T> struct SecondOrderCubicBasis : CubicBasis<T> {
+    T dd[4];
+
+    constexpr explicit SecondOrderCubicBasis(T t) : CubicBasis<T>(t)
+    {
+        T const s6 = T(6) * T(T(1) - t), t6 = T(6) * t;
+        dd[0] = s6;
+        dd[1] = t6 - T(2) * s6;
+        dd[2] = s6 - T(2) * t6;
+        dd[3] = t6;
+    }
+};
+
+/// Whether a basis has second derivatives.
+template <class Basis>
+concept SecondOrderBasis = requires(Basis b)
 {
+    b.dd;
+};
+/// What is evaluated on a basis.
+template <class T, class Basis>
+using FrameOn = std::conditional_t<SecondOrderBasis<Basis>, SecondOrderFrame<T>, TangentFrame<T>>;
+
+/// Tensor-product patch S = B(u) b B(v) of N functions along each parameter.
+///
+/// \tparam Basis  b[N], their derivatives d[N], and dd[N] where second derivatives are asked for;
+///                Bernstein's polynomials or others
+/// \param net     net(i, j): control point i along u, j along v; asked for once each
+/// \returns       position and the derivatives along u and v in the basis's units, second ones too
+///                where the basis has them
+/// \cost          6 N^2 + 9 N mul and twice the basis: 156 mul of cubic Bernstein polynomials
+///                (LOOP10's 162 with the cross product)
+template <class T, class Basis = CubicBasis<T>, class Net>
+constexpr FrameOn<T, Basis> tensor_product(Net const& net, T u, T v)
+{
+    constexpr int N = int(std::extent_v<decltype(Basis::b)>);
     Basis const U(u), V(v);
-    TangentFrame<T> s;
-    unrolled<4>([&](auto i) {
-        float3<T> const b0 = net(i, 0), b1 = net(i, 1), b2 = net(i, 2), b3 = net(i, 3);
+    FrameOn<T, Basis> s;
+    auto const sum = [](T const(&weight)[N], T const(&x)[N]) -> T {
+        return [&]<int... j>(std::integer_sequence<int, j...>)->T
+        {
+            return (... + (weight[j] * x[j]));
+        }
+        (std::make_integer_sequence<int, N>());
+    };
+    unrolled<N>([&](auto i) {
+        float3<T> b[N];
+        unrolled<N>([&](auto j) { b[j] = net(i, j); });
         components([&](auto of) {
-            T const row = V.b[0] * of(b0) + V.b[1] * of(b1) + V.b[2] * of(b2) + V.b[3] * of(b3);
-            T const row_dv = V.d[0] * of(b0) + V.d[1] * of(b1) + V.d[2] * of(b2) + V.d[3] * of(b3);
+            T x[N];
+            unrolled<N>([&](auto j) { x[j] = of(b[j]); });
+            T const row = sum(V.b, x);
+            T const row_dv = sum(V.d, x);
             if constexpr (i == 0) {
                 of(s.position) = U.b[0] * row;
                 of(s.du) = U.d[0] * row;
@@ -57,8 +97,42 @@ constexpr TangentFrame<T> bicubic(Net const& net, T u, T v)
                 of(s.du) = of(s.du) + U.d[i] * row;
                 of(s.dv) = of(s.dv) + U.b[i] * row_dv;
             }
+            if constexpr (SecondOrderBasis<Basis>) {
+                T const row_dvv = sum(V.dd, x);
+                T const zero(0);
+                of(s.duu) = (i == 0 ? zero : of(s.duu)) + U.dd[i] * row;
+                of(s.duv) = (i == 0 ? zero : of(s.duv)) + U.d[i] * row_dv;
+                of(s.dvv) = (i == 0 ? zero : of(s.dvv)) + U.b[i] * row_dvv;
+            }
         });
     });
+    return s;
+}
+
+/// A patch as seen from its first control point: what is a difference does not round in the units
+/// of where the patch lies.
+template <class T, class Patch> class FromFirstPoint {
+public:
+    constexpr explicit FromFirstPoint(Patch const& patch) : origin(patch[0].position), patch_(patch)
+    {
+    }
+    constexpr ControlVertex<T> operator[](int i) const
+    {
+        return {float3<T>(patch_[i].position - origin)};
+    }
+    float3<T> const origin;
+
+private:
+    Patch const& patch_;
+};
+
+/// evaluate(patch) of a patch seen from its first control point, moved back.
+template <class T, class Patch, class Evaluate>
+constexpr SecondOrderFrame<T> second_order_of(Patch const& patch, Evaluate const& evaluate)
+{
+    FromFirstPoint<T, Patch> const near(patch);
+    SecondOrderFrame<T> s = evaluate(near);
+    s.position = near.origin + s.position;
     return s;
 }
 

@@ -53,13 +53,28 @@ private:
     }
 };
 
+/// The same with second derivatives.
+template <class T> struct SecondOrderBsplineBasis : BsplineBasis<T> {
+    T dd[4];
+
+    constexpr explicit SecondOrderBsplineBasis(T t) : BsplineBasis<T>(t)
+    {
+        T const s = T(1) - t;
+        dd[0] = s;
+        dd[1] = t - T(2) * s;
+        dd[2] = s - T(2) * t;
+        dd[3] = t;
+    }
+};
+
 /// \param patch  16 control points in the order of RegularNet, object space; each is fetched once
-/// \returns      position and derivatives along u and v
+/// \returns      position and derivatives along u and v, see tensor_product
 /// \cost         180 mul (186 with the cross product, LOOP10's 162 + 24)
-template <class T> constexpr TangentFrame<T> bspline_quad(auto const& patch, T u, T v)
+template <class T, class Basis = BsplineBasis<T>>
+constexpr FrameOn<T, Basis> bspline_quad(auto const& patch, T u, T v)
 {
     Routine<T> const here("bspline_quad");
-    return bicubic<T, BsplineBasis<T>>(
+    return tensor_product<T, Basis>(
         [&](int i, int j) { return patch[RegularNet::at(i, j)].position; }, u, v);
 }
 
@@ -71,6 +86,13 @@ struct BsplineQuadInside {
     static constexpr TangentFrame<T> evaluate(auto const& patch, DomainInput<T> const& in, bool)
     {
         return bspline_quad<T>(patch, in.u, in.v);
+    }
+    template <class T>
+    static constexpr SecondOrderFrame<T> second_order(auto const& patch, DomainInput<T> const& in)
+    {
+        return second_order_of<T>(patch, [&](auto const& near) {
+            return bspline_quad<T, SecondOrderBsplineBasis<T>>(near, in.u, in.v);
+        });
     }
 };
 

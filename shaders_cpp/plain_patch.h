@@ -20,6 +20,8 @@ namespace tessemu {
 ///             ControlPoints<ControlPoint<T>> const&, DomainInput<T> const&,
 ///             bool true_normals) const;
 ///         std::vector<ResourceInfo> resources() const; // optional
+///         template <class T> SecondOrderFrame<T> second_order( // optional: see curvature.h
+///             ControlPoints<ControlPoint<T>> const&, DomainInput<T> const&) const;
 ///     };
 ///
 /// The normal has unit length; it is z where the tangents are parallel or zero.
@@ -44,6 +46,13 @@ template <class Inside> struct PlainPatch {
     {
         TangentFrame<T> const s = inside.template evaluate<T>(patch, in, true_normals);
         return {s.position, unit_or(cross(s.du, s.dv), [] { return float3<T>(T(0), T(0), T(1)); })};
+    }
+    template <class T>
+    constexpr auto second_order(ControlPoints<ControlPoint<T>> const& patch,
+                                DomainInput<T> const& in) const
+        requires(requires { this->inside.template second_order<T>(patch, in); })
+    {
+        return inside.template second_order<T>(patch, in);
     }
 };
 

@@ -64,4 +64,15 @@ template <class T> struct TangentFrame {
     float3<T> position, du, dv;
 };
 
+/// Position, first and second derivatives, all by the patch's own u and v.
+template <class T> struct SecondOrderFrame {
+    float3<T> position, du, dv, duu, duv, dvv;
+    static constexpr auto signature()
+    {
+        return std::tuple{&SecondOrderFrame::position, &SecondOrderFrame::du,
+                          &SecondOrderFrame::dv,       &SecondOrderFrame::duu,
+                          &SecondOrderFrame::duv,      &SecondOrderFrame::dvv};
+    }
+};
+
 } // namespace tessemu

@@ -16,13 +16,14 @@ namespace tessemu {
 /// Bicubic patch at (u,v).
 ///
 /// \param patch  16 control points, object space; each is fetched once
-/// \returns      position and derivatives along u and v
+/// \returns      position and derivatives along u and v, see tensor_product
 /// \cost         156 mul (162 with the cross product)
-template <class T> constexpr TangentFrame<T> regular_quad(auto const& patch, T u, T v)
+template <class T, class Basis = CubicBasis<T>>
+constexpr FrameOn<T, Basis> regular_quad(auto const& patch, T u, T v)
 {
     Routine<T> const here("regular_quad");
     constexpr int net[4][4] = {{0, 8, 7, 3}, {4, 12, 15, 11}, {9, 13, 14, 6}, {1, 5, 10, 2}};
-    return bicubic<T>([&](int i, int j) { return patch[net[i][j]].position; }, u, v);
+    return tensor_product<T, Basis>([&](int i, int j) { return patch[net[i][j]].position; }, u, v);
 }
 
 struct RegularQuadInside : CubicEdges<4> {
@@ -32,6 +33,13 @@ struct RegularQuadInside : CubicEdges<4> {
     static constexpr TangentFrame<T> evaluate(auto const& patch, DomainInput<T> const& in, bool)
     {
         return regular_quad<T>(patch, in.u, in.v);
+    }
+    template <class T>
+    static constexpr SecondOrderFrame<T> second_order(auto const& patch, DomainInput<T> const& in)
+    {
+        return second_order_of<T>(patch, [&](auto const& near) {
+            return regular_quad<T, SecondOrderCubicBasis<T>>(near, in.u, in.v);
+        });
     }
 };
 

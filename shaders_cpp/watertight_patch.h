@@ -89,6 +89,13 @@ constexpr SurfacePoint<T> edge_point(EdgeCurve<T> const& edge, float3<T> const (
 ///             ControlPoints<ControlPoint<T>> const&, int i);
 ///         template <class T> static float3<T> corner_normal(
 ///             ControlPoints<EdgeRegister<T>> const&, int i);
+///         // Optional: edges that are no cubics, in the same routine from both sides; t runs from
+///         // corner k. Point and normal direction; the edge's registers tell whether it is collapsed.
+///         static bool has_own_edge(int k);
+///         template <class T> static SurfacePoint<T> own_edge(
+///             ControlPoints<ControlPoint<T>> const&, int k, T t);
+///         template <class T> static SecondOrderFrame<T> second_order( // optional: see curvature.h
+///             ControlPoints<ControlPoint<T>> const&, DomainInput<T> const&);
 ///     };
 ///
 /// Quad domain: corners p0 (0,0), p1 (1,0), p2 (1,1), p3 (0,1). Tri domain: u = 1 at p0, v = 1 at
@@ -125,6 +132,13 @@ template <class Inside> struct WatertightPatch {
         s.normal = unit_or(s.normal, [&] { return nearest_corner_normal<T>(registers, in); });
         return s;
     }
+    /// Of the inside, on edges too.
+    template <class T>
+    constexpr auto second_order(Patch<T> const& patch, DomainInput<T> const& in) const
+        requires(requires { Inside::template second_order<T>(patch, in); })
+    {
+        return Inside::template second_order<T>(patch, in);
+    }
 
 private:
     template <class T>
@@ -156,6 +170,8 @@ private:
                     float3<T> const W[4] = {first.vector, registers[4 * k + 1].vector,
                                             registers[4 * k + 2].vector,
                                             registers[4 * k + 3].vector};
+                    if constexpr (requires { Inside::has_own_edge(k); })
+                        if (Inside::has_own_edge(k)) return own_edge_point<T>(patch, W, k, at.t[k]);
                     EdgeCurve<T> const e = Inside::template edge<T>(patch, k);
                     auto const back = first.reversed > T(0);
                     T const t = select(back, T(1) - at.t[k], at.t[k]);
@@ -170,6 +186,17 @@ private:
                 },
                 s);
         }
+        return s;
+    }
+
+    /// Without a normal where the edge is collapsed.
+    template <class T>
+    static constexpr SurfacePoint<T> own_edge_point(Patch<T> const& patch, float3<T> const (&W)[4],
+                                                    int k, T t)
+    {
+        SurfacePoint<T> s = Inside::template own_edge<T>(patch, k, t);
+        T const size = dot(W[0], W[0]) + dot(W[1], W[1]) + dot(W[2], W[2]) + dot(W[3], W[3]);
+        s.normal = select(size > T(0), s.normal, float3<T>(T(0), T(0), T(0)));
         return s;
     }
 

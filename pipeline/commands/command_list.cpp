@@ -5,11 +5,6 @@ namespace tessemu {
 
 namespace {
 
-OutputLayout output_of(GraphicsPipelineDesc const& d)
-{
-    return d.domain_shader ? d.domain_output() : d.vertex_shader->output();
-}
-
 glm::vec3 as_vector(float3<float> const& v)
 {
     return {v.x, v.y, v.z};
@@ -21,7 +16,7 @@ DrawStatistics visit_grids(Draw const& d, PatchVisitor const& visit, ThreadPool 
 {
     std::size_t const points = d.grid->patch.points(), patches = d.patches.size();
     GraphicsPipelineDesc desc = d.pipeline;
-    auto const floats = std::size_t(output_of(desc).floats);
+    auto const floats = std::size_t(d.output().floats);
     std::uint64_t const bytes = std::uint64_t(patches) * points * floats * sizeof(float);
     if (bytes > 0xffffffffu) // a buffer's size is a 32-bit number
         throw LimitError("size in bytes of the vertices that '" + d.name + "' streams out (" +
@@ -83,6 +78,11 @@ DrawStatistics run_draw(Draw const& d, ThreadPool const& threads, CommandOptions
 
 } // namespace
 
+OutputLayout Draw::output() const
+{
+    return pipeline.domain_shader ? pipeline.domain_output() : pipeline.vertex_shader->output();
+}
+
 std::size_t CommandList::patches() const
 {
     std::size_t n = 0;
@@ -93,7 +93,7 @@ std::size_t CommandList::patches() const
 SurfacePatch::SurfacePatch(Draw const& draw, ShadedPatch const& patch)
     : draw_(&draw),
       patch_(patch),
-      layout_(output_of(draw.pipeline))
+      layout_(draw.output())
 {
 }
 
@@ -105,6 +105,11 @@ SurfaceVertex SurfacePatch::vertex(std::size_t i) const
                 as_vector(v.normal),
                 as_vector(v.base),
                 {v.coordinates.x, v.coordinates.y}};
+    }
+    if (layout_.holds<CurvedVertex<float>>()) {
+        auto const v = load_column<CurvedVertex<float>>(patch_.outputs + i, patch_.stride);
+        glm::vec3 const p(v.position.x, v.position.y, v.position.z);
+        return {p, as_vector(v.normal), p, {}, v.curvature};
     }
     if (!layout_.holds<ShadedVertex<float>>())
         throw Error("the draw '" + draw_->name + "' writes vertices that are no surface's");

@@ -11,6 +11,7 @@
 #include "emu/compute_shader.h"
 #include "emu/graphics_pipeline.h"
 #include "pipeline/mesh/patch_place.h"
+#include "shaders_cpp/curvature.h"
 #include "shaders_cpp/displacement.h"
 
 #include <glm/vec2.hpp>
@@ -54,10 +55,14 @@ struct Draw {
     std::span<PatchPlace const> patches = {}; ///< by primitive id; empty: it shows none
     /// The vertices of each patch, where no tessellator makes them: of an instanced draw vertex i
     /// of instance p is point i of patch p, of any other vertex p * points + i. Its vertex shader
-    /// gives ShadedVertex or DisplacedVertex records, as the other draws' domain shaders do.
+    /// gives such records as the other draws' domain shaders do.
     std::shared_ptr<DomainPoints const> grid = {};
 
     bool shows_surface() const { return !patches.empty(); }
+    /// Of the last stage before the geometry shader and the rasterizer.
+    OutputLayout output() const;
+    /// Whether its vertices have a mean curvature.
+    bool has_curvature() const { return output().holds<CurvedVertex<float>>(); }
 };
 
 using Command = std::variant<Dispatch, Draw>;
@@ -95,6 +100,7 @@ struct SurfaceVertex {
     glm::vec3 normal;         ///< of the smooth surface
     glm::vec3 smooth;         ///< its point
     glm::vec2 coordinates{0}; ///< texture coordinates of the patch, where it is displaced
+    float curvature = 0;      ///< mean curvature, where the draw has it
 };
 
 /// A patch as its draw left it: points with a place, and their connectivity.
@@ -108,8 +114,9 @@ public:
     DomainPoints const& domain() const { return *patch_.points; }
     std::size_t points() const { return patch_.points->patch.points(); }
     std::vector<std::uint32_t> const& triangles() const { return patch_.points->patch.indices; }
-    /// Of a draw whose transform was the identity. Throws Error where the draw writes neither
-    /// ShadedVertex nor DisplacedVertex records.
+    bool has_curvature() const { return draw_->has_curvature(); }
+    /// Of a draw whose transform was the identity. Throws Error where the draw writes no
+    /// ShadedVertex, DisplacedVertex or CurvedVertex records.
     SurfaceVertex vertex(std::size_t i) const;
     /// The whole record that the last stage before the rasterizer wrote.
     std::vector<float> scalars(std::size_t i) const;

@@ -4,6 +4,8 @@
 #include "pipeline/commands/displacement.h"
 #include "pipeline/commands/subdivision.h"
 
+#include <cassert>
+
 namespace tessemu {
 
 AnotherWay another_way_of(std::size_t patches, std::uint32_t first_face, std::string const& what)
@@ -92,8 +94,15 @@ void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const&
     desc.vertex_shader = d.vertex_shader;
     desc.hull_shader = d.hull_shader;
     desc.domain_shader = d.domain_shader;
-    PatchEpilog epilog = make_patch_epilog(mesh.base(), d.patches, settings);
-    desc.domain_epilog = std::move(epilog.shader);
+    if (d.domain_shader->output().holds<CurvedPoint<float>>()) {
+        assert(!settings.displacement);
+        desc.domain_epilog =
+            bind_domain_epilog(CurvedProjectionEpilog{settings.view_projection}, settings.machine);
+    } else {
+        PatchEpilog epilog = make_patch_epilog(mesh.base(), d.patches, settings);
+        desc.domain_epilog = std::move(epilog.shader);
+        list.memory.push_back(std::move(epilog.memory));
+    }
     desc.partitioning = settings.partitioning;
     desc.output_primitive = OutputPrimitive::TriangleCw;
     desc.input_control_points = d.control_points;
@@ -101,7 +110,6 @@ void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const&
     d.vertices.bind(out.call);
     out.call.indices = d.indices;
     list.commands.emplace_back(std::move(out));
-    list.memory.push_back(std::move(epilog.memory));
     list.memory.push_back(settings.pose);
 }
 

@@ -104,13 +104,24 @@ struct PatchDraw {
     std::span<PatchPlace const> patches;    ///< by primitive id
     VertexShader vertex_shader;
     HullShader hull_shader;
-    DomainShader domain_shader; ///< gives SurfacePoints
+    DomainShader domain_shader; ///< gives SurfacePoints or CurvedPoints
 };
+
+/// A surface's domain shader; with its curvature where the settings ask for it and the surface has
+/// second derivatives.
+template <class Surface>
+DomainShader bind_surface(Surface const& surface, SurfaceSettings const& settings)
+{
+    if constexpr (HasSecondOrder<Surface>)
+        if (settings.curvature)
+            return bind_domain_shader(CurvedSurface<Surface>{surface}, settings.machine);
+    return bind_domain_shader(surface, settings.machine);
+}
 
 /// The domain shader of a WatertightPatch.
 template <class Surface> DomainShader surface_shader(SurfaceSettings const& settings)
 {
-    return bind_domain_shader(Surface{settings.true_normals}, settings.machine);
+    return bind_surface(Surface{settings.true_normals}, settings);
 }
 
 /// Appends the draw with the settings' epilog: projection, or displacement and projection.

@@ -22,6 +22,7 @@ struct SurfaceSettings {
     std::shared_ptr<Displacement const> displacement; ///< none: the smooth surface
     std::shared_ptr<Pose const> pose;                 ///< none: the mesh at rest
     Matrix4 view_projection = kIdentity;              ///< from object space to clip space
+    bool curvature = false; ///< with mean curvature where there is any; no displacement then
 
     TessFactorRule factor_rule() const
     {

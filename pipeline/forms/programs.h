@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "shaders_cpp/curvature.h"
 #include "shaders_cpp/pole_normals.h"
 #include "shaders_cpp/stencil_form/stencil_compute_shader.h"
 #include "shaders_cpp/stencil_form/stencil_hull_shader.h"
@@ -15,6 +16,7 @@ namespace tessemu {
 /// All of them for a machine's scalar T; `instantiate` is template, or extern template.
 #define TESSEMU_FORM_PROGRAMS(instantiate, T)                                                      \
     instantiate class DomainProgramOn<RegularQuadDomainShader, T>;                                 \
+    instantiate class DomainProgramOn<CurvedSurface<RegularQuadDomainShader>, T>;                  \
     instantiate class DomainProgramOn<RegularCornersDomainShader, T>;                              \
     instantiate class HullProgramOn<StencilQuadHullShader<SummedRows<4>>, T>;                      \
     instantiate class HullProgramOn<StencilQuadHullShader<GatheredRows<4>>, T>;                    \

@@ -178,32 +178,48 @@ template <int kSides> SummedRows<kSides> summed_rows(StencilBuffers const& b)
             {b.order, 3, "order"}};
 }
 
-/// A hull shader with a StencilHullShader's members on the buffers of a kind.
+namespace detail {
+template <class Shader>
+HullShader bind_stencil_hull_shader(Shader hs, int points, std::span<float const> poles, int slot,
+                                    SurfaceSettings const& settings)
+{
+    hs.points = points;
+    hs.poles.normals = {poles, slot, "pole_normals"};
+    hs.factors = settings.factor_rule();
+    return bind_hull_shader(hs, settings.machine);
+}
+} // namespace detail
+
+/// A hull shader with a StencilHullShader's members, of patches that are not wide.
 ///
-/// \tparam Shader  of Rows
+/// 	param Shader  of SummedRows
 /// \param points   its output control points that are rows
+template <class Shader>
+HullShader summed_hull_shader(StencilBuffers const& buffers, int points,
+                              SurfaceSettings const& settings)
+{
+    Shader hs;
+    hs.rows = summed_rows<Shader::kSides>(buffers);
+    return detail::bind_stencil_hull_shader(hs, points, buffers.poles, 4, settings);
+}
+
+/// The same on the buffers of a kind, wide or not.
+///
+/// 	param Shader  of Rows
 template <template <class> class Shader, int kSides>
 HullShader stencil_hull_shader(RowBuffers const& buffers, int points,
                                SurfaceSettings const& settings)
 {
-    auto const bound = [&](auto hs, std::span<float const> poles, int slot) {
-        hs.points = points;
-        hs.poles.normals = {poles, slot, "pole_normals"};
-        hs.factors = settings.factor_rule();
-        return bind_hull_shader(hs, settings.machine);
-    };
-    if (auto const* const b = std::get_if<GatheredBuffers>(&buffers)) {
-        Shader<GatheredRows<kSides>> hs;
-        hs.rows = {b->rows,
-                   {b->sums, 0, "stencil_sums"},
-                   {b->patches, 1, "patch_words"},
-                   {b->constants, 2, "type_constants"}};
-        return bound(hs, b->poles, 3);
-    }
-    StencilBuffers const& b = std::get<StencilBuffers>(buffers);
-    Shader<SummedRows<kSides>> hs;
-    hs.rows = summed_rows<kSides>(b);
-    return bound(hs, b.poles, 4);
+    auto const* const b = std::get_if<GatheredBuffers>(&buffers);
+    if (!b)
+        return summed_hull_shader<Shader<SummedRows<kSides>>>(std::get<StencilBuffers>(buffers),
+                                                              points, settings);
+    Shader<GatheredRows<kSides>> hs;
+    hs.rows = {b->rows,
+               {b->sums, 0, "stencil_sums"},
+               {b->patches, 1, "patch_words"},
+               {b->constants, 2, "type_constants"}};
+    return detail::bind_stencil_hull_shader(hs, points, b->poles, 3, settings);
 }
 
 } // namespace tessemu

@@ -25,6 +25,7 @@ std::vector<std::unique_ptr<Scheme>> const& schemes()
         { Make make_acc; s.push_back(make_acc()); }
         { Make make_pm; s.push_back(make_pm()); }
         { Make make_stam; s.push_back(make_stam()); }
+        { Make make_biseptic; s.push_back(make_biseptic()); }
         { Make make_phong; s.push_back(make_phong()); }
         // clang-format on
         return s;
@@ -40,6 +41,16 @@ Scheme const& find_scheme(std::string_view name)
         known += (known.empty() ? "" : ", ") + s->info().name;
     }
     throw Error("scheme '" + std::string(name) + "' is not known; there is " + known);
+}
+
+void check_curvature(SchemeInfo const& info)
+{
+    if (info.no_curvature.empty()) return;
+    std::string others;
+    for (auto const& s : schemes())
+        if (s->info().no_curvature.empty()) others += (others.empty() ? "" : ", ") + s->info().name;
+    throw Error(info.name + " has no curvature to show: " + info.no_curvature +
+                "; schemes that have it: " + others);
 }
 
 namespace {

@@ -70,6 +70,8 @@ struct SchemeInfo {
     /// Parameters under which patches that meet give their shared points equal bits, where the
     /// defaults do not promise it: those of a scheme that draws as its paper does.
     std::vector<std::pair<std::string, std::string>> watertight_with = {};
+    /// Why it has no mean curvature to show; empty: it has (shaders_cpp/curvature.h).
+    std::string no_curvature = "its domain shaders give no second derivatives";
 };
 
 class Scheme {
@@ -86,6 +88,8 @@ public:
 std::vector<std::unique_ptr<Scheme>> const& schemes();
 /// Throws Error that lists the known names.
 Scheme const& find_scheme(std::string_view name);
+/// Throws Error that says why, and which schemes have it, where a scheme has no curvature to show.
+void check_curvature(SchemeInfo const& info);
 /// "quads and triangles, closed meshes only; creases are drawn smooth"
 std::string in_words(MeshRequirements const& takes);
 

@@ -81,7 +81,7 @@ constexpr TangentFrame<T> gregory_quad(auto const& patch, T u, T v, bool true_no
         if (i == 1 && j == 2) return (F3 = {u, at(L::f_minus(3)), V, at(L::f_plus(3))}).point;
         return at(net[i][j]);
     };
-    TangentFrame<T> s = bicubic<T>(point, u, v);
+    TangentFrame<T> s = tensor_product<T>(point, u, v);
     if (true_normals) {
         CubicBasis<T> const Bu(u), Bv(v);
         T const zero(0), one(1);

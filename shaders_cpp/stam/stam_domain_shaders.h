@@ -10,7 +10,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "shaders_cpp/gregory/domain_shaders.h"
+#include "shaders_cpp/cubic_edges.h"
+#include "shaders_cpp/plain_patch.h"
 #include "shaders_cpp/stam/stam_quad.h"
 
 namespace tessemu {
@@ -36,6 +37,13 @@ struct StamPointsInside {
         return stam_quad<T>(
             tables, [&](int i) { return patch[i].position; }, in.u, in.v);
     }
+    template <class T>
+    constexpr SecondOrderFrame<T> second_order(ControlPoints<ControlVertex<T>> const& patch,
+                                               DomainInput<T> const& in) const
+    {
+        return stam_second_order<T>(
+            tables, [&](int i) { return patch[i].position; }, in.u, in.v);
+    }
 };
 
 /// The net in eigen space from a buffer, which StamProjectionShader filled.
@@ -57,21 +65,28 @@ struct StamBufferInside {
     /// Of any patch of the draw.
     template <class T> constexpr TangentFrame<T> of_patch(std::int32_t patch, T u, T v) const
     {
-        std::int32_t const first = patch * tables.functions;
-        return stam_quad<T>(
-            tables,
-            [&](int i) -> float3<T> {
-                std::int32_t const at = 3 * (first + i);
-                return {load<T>(projected, at), load<T>(projected, at + 1),
-                        load<T>(projected, at + 2)};
-            },
-            u, v);
+        return stam_quad<T>(tables, net_of<T>(patch), u, v);
     }
     template <class T>
     constexpr TangentFrame<T> evaluate(ControlPoints<ControlVertex<T>> const&,
                                        DomainInput<T> const& in, bool) const
     {
         return of_patch<T>(in.primitive_id, in.u, in.v);
+    }
+    template <class T>
+    constexpr SecondOrderFrame<T> second_order(ControlPoints<ControlVertex<T>> const&,
+                                               DomainInput<T> const& in) const
+    {
+        return stam_second_order<T>(tables, net_of<T>(in.primitive_id), in.u, in.v);
+    }
+
+private:
+    template <class T> constexpr auto net_of(std::int32_t patch) const
+    {
+        return [this, first = patch * tables.functions](int i) -> float3<T> {
+            std::int32_t const at = 3 * (first + i);
+            return {load<T>(projected, at), load<T>(projected, at + 1), load<T>(projected, at + 2)};
+        };
     }
 };
 
@@ -149,6 +164,14 @@ struct StamSharedDomainShader {
             !(own | of_owner), [&] { return rim(in.u, in.v); }, s);
     }
 
+    /// Of the patch's own net, on a spoke of another patch too.
+    template <class T>
+    SecondOrderFrame<T> second_order(ControlPoints<ControlVertex<T>> const& patch,
+                                     DomainInput<T> const& in) const
+    {
+        return inside.second_order<T>(patch, in);
+    }
+
 private:
     // Edges and corners alone.
     struct Rim : CubicEdges<4> {
@@ -162,28 +185,5 @@ private:
         }
     };
 };
-
-/// Gregory quads behind whose control points come the patch's corners in the cage.
-struct CagedGregoryInside : GregoryQuadInside {
-    static constexpr int kControlPoints = 24;
-};
-using CagedGregoryDomainShader = WatertightPatch<CagedGregoryInside>;
-
-/// A regular patch whose edges have equal bits from both sides and whose inside is a B-spline: p,
-/// e+ and e-, then the net.
-struct BsplineRowsInside : CubicEdges<4> {
-    static constexpr TessellatorDomain kDomain = TessellatorDomain::Quad;
-    static constexpr int kControlPoints = 12 + RegularNet::kPoints;
-    template <class T>
-    static constexpr TangentFrame<T> evaluate(auto const& patch, DomainInput<T> const& in, bool)
-    {
-        struct Net {
-            decltype(patch) of;
-            constexpr auto operator[](int i) const { return of[12 + i]; }
-        };
-        return bspline_quad<T>(Net{patch}, in.u, in.v);
-    }
-};
-using BsplineRowsDomainShader = WatertightPatch<BsplineRowsInside>;
 
 } // namespace tessemu

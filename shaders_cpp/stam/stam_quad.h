@@ -79,12 +79,100 @@ template <class T> struct StamFrame {
     }
 };
 
-/// Position and derivatives at (u,v); at (0,0), where these are zero or infinite, the limit
-/// position and two tangents that span the tangent plane.
+/// Position and derivatives at (u,v), which is not (0,0).
 ///
 /// The weight lambda^k of a function takes 3 multiplications, of its value and its two derivatives;
 /// 2 of them are won back, because B-splines add up to 1: a sum q = B . (q0, q1, q2, q3) is q1 and
 /// three products.
+///
+/// \tparam Basis  of the sub-patches; second derivatives are made where it has them
+/// \param point   point(i): C^_i, asked for once each
+/// \cost          see stam_quad
+template <class T, class Basis, class Weight, class Point>
+constexpr auto stam_ring_sum(StamTables<Weight> const& tables, Point const& point, T u, T v)
+{
+    using Int = int_of<T>;
+    constexpr bool kSecond = SecondOrderBasis<Basis>;
+    using Result = std::conditional_t<kSecond, SecondOrderFrame<T>, StamFrame<T>>;
+    float3<T> const zero(T(0), T(0), T(0));
+    auto const nothing = [&] {
+        if constexpr (kSecond)
+            return Result{zero, zero, zero, zero, zero, zero};
+        else
+            return Result{zero, zero, zero};
+    };
+    StamRing<T> const at(u, v);
+    Basis const A(at.a), B(at.b);
+    Int const first_power = at.k * Int(tables.functions);
+    Result sum = nothing();
+    for (int sub : loop<T>(3))
+        sum = when(
+            at.sub_patch == Int(sub),
+            [&] {
+                Result r = nothing();
+                // From the small ones to the constant one, which is the limit position: so the sums
+                // of the others do not round in its units.
+                for (int turn : loop<T>(tables.functions)) {
+                    int const i = tables.functions - 1 - turn;
+                    if constexpr (kSecond) { // or its rounding would be a derivative, times 4^(k+1)
+                        if (i == 0) {
+                            r.position = r.position + point(i);
+                            break;
+                        }
+                    }
+                    int const first = (sub * tables.functions + i) * 16;
+                    T q[4], dq[4], ddq[4];
+                    unrolled<4>([&](auto c) {
+                        T const x0 = load<T>(tables.splines, first + 4 * c),
+                                x1 = load<T>(tables.splines, first + 4 * c + 1),
+                                x2 = load<T>(tables.splines, first + 4 * c + 2),
+                                x3 = load<T>(tables.splines, first + 4 * c + 3);
+                        q[c] = B.b[0] * x0 + B.b[1] * x1 + B.b[2] * x2 + B.b[3] * x3;
+                        dq[c] = B.d[0] * x0 + B.d[1] * x1 + B.d[2] * x2 + B.d[3] * x3;
+                        if constexpr (kSecond)
+                            ddq[c] = B.dd[0] * x0 + B.dd[1] * x1 + B.dd[2] * x2 + B.dd[3] * x3;
+                    });
+                    auto const along = [&](T const(&x)[4]) -> T {
+                        return x[1] + A.b[0] * T(x[0] - x[1]) + A.b[2] * T(x[2] - x[1]) +
+                               A.b[3] * T(x[3] - x[1]);
+                    };
+                    T const power = load<T>(tables.powers, first_power + Int(i));
+                    T const phi = power * along(q), phi_v = power * along(dq);
+                    T const sum_u = A.d[0] * q[0] + A.d[1] * q[1] + A.d[2] * q[2] + A.d[3] * q[3];
+                    T const phi_u = power * sum_u;
+                    float3<T> const C = point(i);
+                    r.position = r.position + phi * C;
+                    r.du = r.du + phi_u * C;
+                    r.dv = r.dv + phi_v * C;
+                    if constexpr (kSecond) {
+                        auto const sum_of = [](T const(&d)[4], T const(&x)[4]) -> T {
+                            return d[0] * x[0] + d[1] * x[1] + d[2] * x[2] + d[3] * x[3];
+                        };
+                        T const phi_uu = power * sum_of(A.dd, q), phi_uv = power * sum_of(A.d, dq),
+                                phi_vv = power * along(ddq);
+                        r.duu = r.duu + phi_uu * C;
+                        r.duv = r.duv + phi_uv * C;
+                        r.dvv = r.dvv + phi_vv * C;
+                    }
+                }
+                return r;
+            },
+            sum);
+    Result scaled = nothing();
+    scaled.position = sum.position;
+    scaled.du = at.scale * sum.du;
+    scaled.dv = at.scale * sum.dv;
+    if constexpr (kSecond) {
+        T const squared = at.scale * at.scale;
+        scaled.duu = squared * sum.duu;
+        scaled.duv = squared * sum.duv;
+        scaled.dvv = squared * sum.dvv;
+    }
+    return scaled;
+}
+
+/// Position and derivatives at (u,v); at (0,0), where these are zero or infinite, the limit
+/// position and two tangents that span the tangent plane.
 ///
 /// \param point  point(i): C^_i, asked for once each
 /// \cost         away from (0,0) 54 mul a function (LOOP10's 54 of 108n + 534), and 61 beside them
@@ -92,7 +180,6 @@ template <class T> struct StamFrame {
 template <class T, class Weight, class Point>
 constexpr TangentFrame<T> stam_quad(StamTables<Weight> const& tables, Point const& point, T u, T v)
 {
-    using Int = int_of<T>;
     Routine<T> const here("stam_quad");
     float3<T> const zero(T(0), T(0), T(0));
     StamFrame<T> s{zero, zero, zero};
@@ -104,52 +191,21 @@ constexpr TangentFrame<T> stam_quad(StamTables<Weight> const& tables, Point cons
         },
         s);
     s = when(
-        !corner,
-        [&] {
-            StamRing<T> const at(u, v);
-            BsplineBasis<T> const A(at.a), B(at.b);
-            Int const first_power = at.k * Int(tables.functions);
-            StamFrame<T> sum{zero, zero, zero};
-            for (int sub : loop<T>(3))
-                sum = when(
-                    at.sub_patch == Int(sub),
-                    [&] {
-                        StamFrame<T> r{zero, zero, zero};
-                        // From the small ones to the constant one, which is the limit position:
-                        // so the sums of the others do not round in its units.
-                        for (int turn : loop<T>(tables.functions)) {
-                            int const i = tables.functions - 1 - turn;
-                            int const first = (sub * tables.functions + i) * 16;
-                            T q[4], dq[4];
-                            unrolled<4>([&](auto c) {
-                                T const x0 = load<T>(tables.splines, first + 4 * c),
-                                        x1 = load<T>(tables.splines, first + 4 * c + 1),
-                                        x2 = load<T>(tables.splines, first + 4 * c + 2),
-                                        x3 = load<T>(tables.splines, first + 4 * c + 3);
-                                q[c] = B.b[0] * x0 + B.b[1] * x1 + B.b[2] * x2 + B.b[3] * x3;
-                                dq[c] = B.d[0] * x0 + B.d[1] * x1 + B.d[2] * x2 + B.d[3] * x3;
-                            });
-                            auto const along = [&](T const(&x)[4]) -> T {
-                                return x[1] + A.b[0] * T(x[0] - x[1]) + A.b[2] * T(x[2] - x[1]) +
-                                       A.b[3] * T(x[3] - x[1]);
-                            };
-                            T const power = load<T>(tables.powers, first_power + Int(i));
-                            T const phi = power * along(q), phi_v = power * along(dq);
-                            T const sum_u =
-                                A.d[0] * q[0] + A.d[1] * q[1] + A.d[2] * q[2] + A.d[3] * q[3];
-                            T const phi_u = power * sum_u;
-                            float3<T> const C = point(i);
-                            r.position = r.position + phi * C;
-                            r.du = r.du + phi_u * C;
-                            r.dv = r.dv + phi_v * C;
-                        }
-                        return r;
-                    },
-                    sum);
-            return StamFrame<T>{sum.position, at.scale * sum.du, at.scale * sum.dv};
-        },
-        s);
+        !corner, [&] { return stam_ring_sum<T, BsplineBasis<T>>(tables, point, u, v); }, s);
     return {s.position, s.du, s.dv};
+}
+
+/// The same with second derivatives; at (0,0), where these are infinite for most valences, those of
+/// the nearest domain point, (2^-16, 2^-16).
+template <class T, class Weight, class Point>
+constexpr SecondOrderFrame<T> stam_second_order(StamTables<Weight> const& tables,
+                                                Point const& point, T u, T v)
+{
+    Routine<T> const here("stam_second_order");
+    T const zero(0), nearest(0x1p-16f);
+    mask_of<T> const first_u = u == zero, first_v = v == zero, corner = first_u & first_v;
+    return stam_ring_sum<T, SecondOrderBsplineBasis<T>>(tables, point, select(corner, nearest, u),
+                                                        select(corner, nearest, v));
 }
 
 } // namespace tessemu

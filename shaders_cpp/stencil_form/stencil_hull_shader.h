@@ -234,7 +234,7 @@ struct StencilHullShader {
 
     template <class T>
     std::array<T, 6> tess_factors(PatchInput, ControlPoints<ControlVertex<T>> const&,
-                                  ControlPoints<ControlVertex<T>> const& out,
+                                  auto const& out,
                                   ControlPoints<EdgeRegister<T>> const& registers) const
     {
         return factors.template factors<kDomain, T>(

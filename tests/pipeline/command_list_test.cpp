@@ -399,6 +399,7 @@ TEST(Grid, AVisitorDoesNotChangeThePicture)
     FrameSettings s;
     s.width = s.height = 64;
     s.tess_factor = 4;
+    s.view = View::Normals;
     s.camera = frame_points(patches.mesh().mesh().positions, {-0.5f, -0.4f, -1}, 1);
     std::vector<std::byte> pictures[2];
     for (std::vector<std::byte>& picture : pictures) {
@@ -409,10 +410,7 @@ TEST(Grid, AVisitorDoesNotChangeThePicture)
         RasterTarget raster{{&color}, &depth, {{0, 0, 64, 64, 0, 1}}};
         raster.rasterizer.cull = CullMode::None;
         CommandList list = frame_commands(patches, s, seen_surface(s));
-        list.for_each_surface_draw([&](Draw& d) {
-            d.pipeline.pixel_shader =
-                make_view(View::Normals, d.kind, s.camera, nullptr, s.machine);
-        });
+        list.for_each_surface_draw([&](Draw& d) { d.pipeline.pixel_shader = make_view(d, s); });
         std::size_t visited = 0;
         CommandOptions options;
         options.raster = &raster;

@@ -27,7 +27,9 @@ void expect_same(Case const& c, int threads, Machine const& machine = {})
     Camera camera = frame_points(m.mesh->mesh().positions, {0.5f, 0.4f, 1}, 1);
     camera.focal *= c.focal;
 
-    SurfaceSettings settings;
+    FrameSettings settings;
+    settings.view = View::Patches;
+    settings.camera = camera;
     settings.tess_factor = c.tess;
     settings.partitioning = c.partitioning;
     settings.machine = machine;
@@ -35,7 +37,7 @@ void expect_same(Case const& c, int threads, Machine const& machine = {})
     CommandList list = m.patches->commands(settings);
     std::vector<PixelShader> shaders; // of the draws, in order
     list.for_each_surface_draw([&](Draw& d) {
-        d.pipeline.pixel_shader = make_view(View::Patches, d.kind, camera, nullptr, machine);
+        d.pipeline.pixel_shader = make_view(d, settings);
         shaders.push_back(d.pipeline.pixel_shader);
     });
     std::array<float, 4> const background{0, 0, 0, 0};

@@ -1,5 +1,5 @@
-// Hull shader of Stam's evaluation as in the paper, LOOP10 4.2: thread i is the product of row i of
-// V^-1 with the net, a row of the stencil form whose zero weights are multiplied too.
+// Hull shaders of patches at an isolated extraordinary vertex, LOOP10 section 4, and of the patches
+// beside them.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -9,23 +9,24 @@
 
 namespace tessemu {
 
-/// In: the net, whose first four points are the patch's corners. Out: the net in eigen space. Tess
-/// factors follow the cage's edges, as those of LOOP10's regular patches do.
+/// The product of a dense matrix with a net of 2n + 8 vertices, whose first four points are the
+/// patch's corners: a row of the stencil form whose zero weights are multiplied too. Tess factors
+/// follow the cage's edges, as those of LOOP10's regular patches do.
 ///
 /// \cost  6n + 24 mul a control point
-template <class Rows> struct StamHullShader : StencilQuadHullShader<Rows> {
+template <class Rows> struct DenseNetHullShader : StencilQuadHullShader<Rows> {
     template <class T> using PatchConstant = ControlVertex<T>; // none
-    template <class T> using Points = ControlPoints<ControlVertex<T>>;
+    template <class T> using Inputs = ControlPoints<ControlVertex<T>>;
 
     int patch_constants() const { return 0; }
+    std::vector<ResourceInfo> resources() const { return this->rows.resources(); }
     template <class T>
-    ControlVertex<T> patch_constant(PatchInput, Points<T> const&, Points<T> const&, int_of<T>) const
+    ControlVertex<T> patch_constant(PatchInput, Inputs<T> const&, auto const&, int_of<T>) const
     {
         return {};
     }
     template <class T>
-    std::array<T, 6> tess_factors(PatchInput, Points<T> const& in, Points<T> const&,
-                                  Points<T> const&) const
+    std::array<T, 6> tess_factors(PatchInput, Inputs<T> const& in, auto const&, auto const&) const
     {
         return cage_factors<TessellatorDomain::Quad, T>(this->factors,
                                                         [&](int k) { return in[k].position; });
@@ -43,6 +44,12 @@ template <class Rows> struct CagedStencilHullShader : StencilQuadHullShader<Rows
         return cage_factors<TessellatorDomain::Quad, T>(
             this->factors, [&](int k) { return out[this->points - 4 + k].position; });
     }
+};
+
+/// Of a patch whose net comes from a buffer: the corners alone, for tess factors.
+struct CornersAlone {
+    static constexpr int kPoints = 4;
+    static constexpr int kCorners[4] = {0, 1, 2, 3};
 };
 
 } // namespace tessemu
