@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace tessemu {
@@ -53,9 +54,11 @@ int run(CostRequest o)
     add_run(job.header, job, threads, clock.seconds());
     DrawCost const cost = estimate_cost(gpu, statistics);
     CostSummary summary{gpu.name, cost.bound, gpu.overhead, cost.shaders, cost.seconds, {}, {}};
+    double fetches = gpu.any_fetch; // of the fastest kind
+    for (auto const& [kind, rate] : gpu.fetch) fetches = std::max(fetches, rate);
     Roofline roofline{fmt::format("{} on {}", as_utf8(job.header.inputs[0].first), gpu.name),
                       gpu.arithmetic,
-                      16 * gpu.any_fetch,
+                      16 * fetches,
                       {}};
     for (StageCost const& s : cost.stages) {
         summary.rows.push_back({s.stage, s.bound(), s.arithmetic, s.fetch, s.memory, s.fixed,

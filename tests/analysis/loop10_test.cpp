@@ -208,8 +208,8 @@ TEST(RegularPatches, TheBsplineIsCheaperUpToAFactorWhereItsPointsCostWhatTheHull
         return last_factor_of_bspline(
             [&](DrawStatistics const& s) { return estimate_cost(m, s).shaders; });
     };
-    EXPECT_EQ(on("radeon5870"), 18);
-    EXPECT_EQ(on("gtx480"), 20);
+    EXPECT_EQ(on("radeon5870"), 16);
+    EXPECT_EQ(on("gtx480"), 12);
 }
 
 } // namespace

@@ -76,6 +76,8 @@ public:
     /// "3 of 8: 0.95 (Radeon, Cat, 4) to 1.02 (...)"; \param format  of a value
     std::string text(char const* format = "{:.2f}") const
     {
+        if (low_ == high_)
+            return fmt::format("{}: {} in all", count(), fmt::format(fmt::runtime(format), low_));
         return fmt::format("{}: {} ({}) to {} ({})", count(),
                            fmt::format(fmt::runtime(format), low_), low_at_,
                            fmt::format(fmt::runtime(format), high_), high_at_);
@@ -201,6 +203,7 @@ private:
     PaperClaim d() const
     {
         Cases cases;
+        int equal = 0;
         for_each_frame(0, kFigure5Factors, [&](std::size_t g, std::size_t m, std::size_t f) {
             FrameTime const *slower = &frame(g, m, kGregory1, f), *faster = &frame(g, m, kStam, f);
             if (frame(g, m, kGregory2, f).seconds > slower->seconds)
@@ -209,12 +212,13 @@ private:
                 faster = &frame(g, m, kBiseptic, f);
             double const r = slower->rate() / faster->rate();
             cases.add(r, r > 1, place(g, m, f), slower->bound);
+            equal += r == 1;
         });
         return {"d",
                 "Gregory1 and Gregory2 always outperform Stam and biseptic",
                 decided(cases.all()),
                 "the slower of the first two has more frames a second than the faster of the last",
-                "one over the other: " + cases.text("{:.3f}"),
+                fmt::format("one over the other: {}; the same in {}", cases.text("{:.3f}"), equal),
                 cases.bound()};
     }
 
