@@ -273,13 +273,6 @@ SchemeSamples sample_scheme(LimitSurface const& limit, PatchMesh const& patches,
     return out;
 }
 
-double diagonal_of(ControlMesh const& mesh)
-{
-    Vec low(1e300), high(-1e300);
-    for (glm::vec3 const& p : mesh.positions) low = min(low, Vec(p)), high = max(high, Vec(p));
-    return glm::length(high - low);
-}
-
 EqualParameterErrors errors_of(LimitSurface const& limit, SchemeSamples const& samples,
                                double diagonal)
 {
@@ -323,6 +316,13 @@ ErrorStatistics EqualParameterErrors::statistics(std::vector<double> const& valu
     return a.result();
 }
 
+double bounding_box_diagonal(ControlMesh const& mesh)
+{
+    Vec low(1e300), high(-1e300);
+    for (glm::vec3 const& p : mesh.positions) low = min(low, Vec(p)), high = max(high, Vec(p));
+    return glm::length(high - low);
+}
+
 double quantile(std::vector<double> const& values, std::vector<double> const& weights, double share)
 {
     std::vector<std::size_t> order;
@@ -360,7 +360,7 @@ EqualParameterErrors equal_parameter_errors(PatchMesh const& patches, FrameSetti
     check_level(patches.mesh(), level);
     LimitSurface const limit(patches.mesh().topology(), level);
     return errors_of(limit, sample_scheme(limit, patches, settings, threads),
-                     diagonal_of(patches.mesh().base()));
+                     bounding_box_diagonal(patches.mesh().base()));
 }
 
 SurfaceComparison compare_with_limit(PatchMesh const& patches, FrameSettings settings, int level,
@@ -370,7 +370,7 @@ SurfaceComparison compare_with_limit(PatchMesh const& patches, FrameSettings set
     check_level(mesh, level);
     LimitSurface const limit(mesh.topology(), level);
     SurfaceComparison out;
-    out.diagonal = diagonal_of(mesh.base());
+    out.diagonal = bounding_box_diagonal(mesh.base());
 
     Triangles smooth;
     smooth.position = limit.positions();

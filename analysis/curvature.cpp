@@ -3,24 +3,12 @@
 
 #include "analysis/compare.h"
 
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace tessemu {
-
-namespace {
-
-double diagonal_of(ControlMesh const& mesh)
-{
-    glm::vec3 low(INFINITY), high(-INFINITY);
-    for (glm::vec3 const& p : mesh.positions) low = min(low, p), high = max(high, p);
-    return mesh.positions.empty() ? 0 : double(glm::length(high - low));
-}
-
-} // namespace
 
 double curvature_range(PatchMesh const& patches, FrameSettings settings, ThreadPool const& threads)
 {
@@ -46,7 +34,7 @@ double curvature_range(PatchMesh const& patches, FrameSettings settings, ThreadP
         for (std::size_t i = first; i < size.size(); ++i)
             if (!std::isfinite(size[i]) || !std::isfinite(weight[i])) size[i] = weight[i] = 0;
     });
-    double const diagonal = diagonal_of(patches.mesh().base());
+    double const diagonal = bounding_box_diagonal(patches.mesh().base());
     return std::max(quantile(size, weight, 0.99), diagonal > 0 ? 0.01 / diagonal : 0);
 }
 

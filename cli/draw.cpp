@@ -205,7 +205,11 @@ int run(DrawRequest const& o)
     std::vector<OutputFile*> const pictures = pictures_of(o, out);
     OutputFile* const picture = pictures.empty() ? nullptr : pictures[0];
     bool const cage = o.view.shows == ViewRequest::Shows::Cage;
-    if (o.shows(View::Curvature)) check_curvature(o.surface.model.scheme->info());
+    if (o.shows(View::Curvature)) {
+        check_curvature(o.surface.model.scheme->info());
+        if (o.surface.displace.heights.kind != DisplaceRequest::Heights::Kind::None)
+            throw Error("--view curvature is of the smooth surface: it takes no --displace");
+    }
     keep_inputs(out, o.surface);
     Job job = prepare(o.surface, "draw", cage ? refine_for_scheme : build_scheme);
     set_picture(job, o.picture, o.surface);

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Draws the pictures of docs/images with the built program. Standard library only."""
 import json
+import math
 import pathlib
 import shutil
 import subprocess
@@ -46,6 +47,50 @@ def figures():
             "--camera", "from=.3,.2,1", "-o", folder + "/sway.png")
         for i in (1, 3):
             shutil.copy(folder + "/sway_%04d.png" % i, OUT / ("sway%d.png" % i))
+
+
+def star(valence):
+    """An OBJ file: quads around a vertex of a valence, four rings of them, on a saddle."""
+    rings, lines, number = 4, [], {}
+
+    def vertex(sector, x, y):  # x along spoke `sector`, y along the next one
+        if x == 0:
+            sector, x, y = sector + 1, y, 0
+        key = (sector % valence, x, y) if x else (0, 0, 0)
+        if key not in number:
+            a, b = (2 * math.pi * (sector + k) / valence for k in (0, 1))
+            px, py = x * math.cos(a) + y * math.cos(b), x * math.sin(a) + y * math.sin(b)
+            # Rings that lie one around the other also where sectors are narrow or wide.
+            if x:
+                scale = max(x, y) / math.hypot(px, py)
+                px, py = px * scale, py * scale
+            lines.append("v %.6f %.6f %.6f" % (px, py, 0.1 * px * px - 0.09 * py * py + 0.05 * px * py))
+            number[key] = len(lines)
+        return number[key]
+    faces = []
+    for sector in range(valence):
+        for x in range(rings):
+            for y in range(rings):
+                faces.append("f %d %d %d %d" % (vertex(sector, x, y), vertex(sector, x + 1, y),
+                                                vertex(sector, x + 1, y + 1), vertex(sector, x, y + 1)))
+    return "\n".join(lines + faces) + "\n"
+
+
+def smoothness():
+    """Closely at a vertex of each valence: rows of docs/smoothness.md."""
+    known = run("schemes")
+    with tempfile.TemporaryDirectory() as folder:
+        for valence in (3, 5, 8):
+            cage = pathlib.Path(folder) / ("star%d.obj" % valence)
+            cage.write_text(star(valence))
+            for scheme in ("stam", "biseptic"):
+                if scheme not in known:
+                    print("no scheme", scheme, "yet: its pictures are left out")
+                    continue
+                for view, options in (("zebra", []), ("curvature", ["--curvature-max", "0.12"])):
+                    run("draw", str(cage), "--scheme", scheme, "--tess", "64", "--size", "240x240", "--samples", "4",
+                        "--view", view, "--camera", "eye=0,-1.5,5:target=0,0,0:up=0,1,0:focal=8", *options,
+                        "-o", str(OUT / ("smoothness_%d_%s_%s.png" % (valence, scheme, view))))
 
 
 def cracks():
@@ -115,6 +160,7 @@ if __name__ == "__main__":
     OUT.mkdir(parents=True, exist_ok=True)
     pictures()
     subdivision()
+    smoothness()
     figures()
     cracks()
     patterns()

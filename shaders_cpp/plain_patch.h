@@ -5,6 +5,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "emu/hull_shader.h"
 #include "shaders_cpp/cage_form/cage_factors.h"
 #include "shaders_cpp/records.h"
 

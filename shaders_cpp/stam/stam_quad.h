@@ -93,23 +93,23 @@ constexpr auto stam_ring_sum(StamTables<Weight> const& tables, Point const& poin
 {
     using Int = int_of<T>;
     constexpr bool kSecond = SecondOrderBasis<Basis>;
-    using Result = std::conditional_t<kSecond, SecondOrderFrame<T>, StamFrame<T>>;
+    using Derivatives = std::conditional_t<kSecond, SecondOrderFrame<T>, StamFrame<T>>;
     float3<T> const zero(T(0), T(0), T(0));
     auto const nothing = [&] {
         if constexpr (kSecond)
-            return Result{zero, zero, zero, zero, zero, zero};
+            return Derivatives{zero, zero, zero, zero, zero, zero};
         else
-            return Result{zero, zero, zero};
+            return Derivatives{zero, zero, zero};
     };
     StamRing<T> const at(u, v);
     Basis const A(at.a), B(at.b);
     Int const first_power = at.k * Int(tables.functions);
-    Result sum = nothing();
+    Derivatives sum = nothing();
     for (int sub : loop<T>(3))
         sum = when(
             at.sub_patch == Int(sub),
             [&] {
-                Result r = nothing();
+                Derivatives r = nothing();
                 // From the small ones to the constant one, which is the limit position: so the sums
                 // of the others do not round in its units.
                 for (int turn : loop<T>(tables.functions)) {
@@ -158,7 +158,7 @@ constexpr auto stam_ring_sum(StamTables<Weight> const& tables, Point const& poin
                 return r;
             },
             sum);
-    Result scaled = nothing();
+    Derivatives scaled = nothing();
     scaled.position = sum.position;
     scaled.du = at.scale * sum.du;
     scaled.dv = at.scale * sum.dv;

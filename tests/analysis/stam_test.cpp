@@ -11,7 +11,7 @@
 #include "shaders_cpp/records.h"
 #include "tests/support/files.h"
 #include "tests/support/gzip.h"
-#include "tests/support/printed.h"
+#include "tests/support/isolated_nets.h"
 #include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -27,6 +27,8 @@
 
 namespace tessemu {
 namespace {
+
+using test::checked, test::patches_of;
 
 SchemeOnMesh stam(ControlMesh mesh, ParameterTexts set = {}, int subdivide = 0)
 {
@@ -168,25 +170,6 @@ INSTANTIATE_TEST_SUITE_P(Cages, LimitSamples,
                              return s;
                          });
 
-// A face at the boundary of the refined mesh has a vertex there.
-std::size_t boundary_faces(Topology const& t)
-{
-    std::size_t out = 0;
-    for (std::uint32_t f = 0; f < t.mesh().faces(); ++f) {
-        auto const face = t.mesh().face(f);
-        out += std::any_of(face.begin(), face.end(),
-                           [&](std::uint32_t v) { return t.is_boundary(v); });
-    }
-    return out;
-}
-
-std::size_t patches_of(PatchMesh const& m, std::string const& kind)
-{
-    for (PatchCount const& c : m.patch_counts())
-        if (c.kind.name == kind) return c.patches;
-    return 0;
-}
-
 // The bound of the limit samples, for whole surfaces on the limit's dyadic grid: built-in cages,
 // and poles beyond valence 12, whose nets a dispatch projects.
 TEST(Stam, IsTheLimitSurfaceOfAnyClosedCage)
@@ -230,102 +213,11 @@ TEST(Stam, NormalsAreTheLimitSurfaces)
     }
 }
 
-// Faces at the boundary are counted; all others are the limit surface.
-TEST(Stam, OnOpenCagesTheFacesAtTheBoundaryAreGregoryPatches)
+TEST(Stam, BesideAVertexOfTwoEdgesIsTheLimitSurface)
 {
-    for (char const* name : {"jug", "saddle_star", "grid"}) {
-        ControlMesh const mesh =
-            name == std::string("grid") ? test::grid(5, 4).mesh : load_model(name).mesh;
-        for (ParameterTexts const& choices : all_choices()) {
-            SCOPED_TRACE(std::string(name) + ", " + choices[0].second);
-            SchemeOnMesh const on = stam(mesh, choices);
-            std::size_t const expected = boundary_faces(on.mesh->topology());
-            EXPECT_EQ(patches_of(*on.patches, "Gregory quad"), expected);
-            std::size_t warnings = 0;
-            for (std::string const& w : on.warnings)
-                warnings += w.find(std::to_string(expected) +
-                                   " faces at the boundary are Gregory patches") == 0;
-            EXPECT_EQ(warnings, expected ? 1u : 0u);
-            BuildOptions strict;
-            strict.strict = true;
-            strict.set = choices;
-            if (expected) {
-                EXPECT_THROW(build_scheme(find_scheme("stam"), mesh, strict), MeshError);
-            }
-        }
-    }
-    // Two quads in from the boundary of a flat grid nothing but B-splines reaches.
-    SchemeOnMesh const on = stam(test::grid(5, 4).mesh);
-    std::size_t exact = 0;
-    visit_surface(*on.patches, {}, ThreadPool(1),
-                  [&](SurfacePatch const& p) { exact += p.kind().name == "regular quad"; });
-    EXPECT_EQ(exact, (2 * 5 - 2) * (2 * 4 - 2));
-}
-
-// They are gregory-stencil's of the same refined mesh, to the bit.
-TEST(Stam, FacesAtTheBoundaryAreThoseOfGregoryStencil)
-{
-    struct Cage {
-        ControlMesh mesh;
-        int steps;
-    };
-    for (Cage const& cage : {Cage{load_model("jug").mesh, 2}, Cage{test::grid(5, 4).mesh, 1}}) {
-        FrameSettings s;
-        s.tess_factor = 5.3f;
-        std::map<std::tuple<std::uint32_t, int, int, int, int>, std::vector<float>> gregory;
-        auto const each = [&](PatchMesh const& patches, auto const& work) {
-            visit_surface(patches, s, ThreadPool(1), [&](SurfacePatch const& p) {
-                if (p.kind().name != "Gregory quad") return;
-                PatchPlace const& at = p.place();
-                std::vector<float> points;
-                for (std::size_t i = 0; i < p.points(); ++i) {
-                    SurfaceVertex const v = p.vertex(i);
-                    for (int k = 0; k < 3; ++k)
-                        points.insert(points.end(), {v.position[k], v.normal[k]});
-                }
-                work(std::tuple(at.face, int(at.corner), int(at.i), int(at.j), int(at.rotation)),
-                     points);
-            });
-        };
-        SchemeOnMesh const reference =
-            build_scheme(find_scheme("gregory-stencil"), cage.mesh, {.subdivide = cage.steps});
-        each(*reference.patches, [&](auto const& at, auto const& points) { gregory[at] = points; });
-        for (ParameterTexts const& choices : all_choices()) {
-            SchemeOnMesh const on = stam(cage.mesh, choices);
-            std::size_t compared = 0;
-            each(*on.patches, [&](auto const& at, auto const& points) {
-                ASSERT_TRUE(gregory.count(at));
-                EXPECT_EQ(points, gregory[at]);
-                ++compared;
-            });
-            EXPECT_EQ(compared, boundary_faces(on.mesh->topology()));
-        }
-    }
-}
-
-// A closed strip of four quads around an axis, with vertices of two edges at its ends.
-ControlMesh with_valence_two()
-{
-    ControlMesh m;
-    m.positions = {{0, 0, 1}, {1, 0, 0}, {0, 0, -1}, {-1, 0, 0}, {0.5f, 1, 0}, {-0.5f, 1, 0}};
-    m.add_face(std::array<std::uint32_t, 4>{0, 1, 2, 4});
-    m.add_face(std::array<std::uint32_t, 4>{0, 4, 2, 5});
-    m.add_face(std::array<std::uint32_t, 4>{0, 5, 2, 3});
-    m.add_face(std::array<std::uint32_t, 4>{0, 3, 2, 1});
-    return m;
-}
-
-TEST(Stam, AtAVertexOfTwoEdgesAreGregoryPatches)
-{
-    ControlMesh const mesh = with_valence_two();
+    ControlMesh const mesh = test::with_valence_two();
     for (ParameterTexts const& choices : all_choices()) {
         SchemeOnMesh const on = stam(mesh, choices);
-        EXPECT_EQ(patches_of(*on.patches, "Gregory quad"), 4u * 2);
-        std::size_t warnings = 0;
-        for (std::string const& w : on.warnings)
-            warnings += w.find("8 faces at a vertex of 2 edges are Gregory patches") == 0;
-        EXPECT_EQ(warnings, 1u);
-        // All others lie on the limit surface.
         EqualParameterErrors const e = equal_parameter_errors(*on.patches, {}, 2, ThreadPool(1));
         EXPECT_GT(
             std::count_if(e.distance.begin(), e.distance.end(), [](double d) { return d <= 2e-6; }),
@@ -357,15 +249,6 @@ TEST(Stam, AWarningCountsThePatchesThatADispatchProjects)
     }
 }
 
-std::map<std::string, CheckedVerdict> checked(PatchMesh const& patches, WatertightSettings s)
-{
-    s.rays = 0;
-    s.frame.width = s.frame.height = 64;
-    std::map<std::string, CheckedVerdict> out;
-    for (CheckedVerdict& v : check_watertight(patches, s, ThreadPool())) out[v.name] = std::move(v);
-    return out;
-}
-
 // In the paper's way both fail, on spokes and on outer edges, and the sites say which.
 TEST(Stam, AsThePaperDrawsItCheckNamesSpokesAndOuterEdges)
 {
@@ -393,87 +276,6 @@ TEST(Stam, AsThePaperDrawsItCheckNamesSpokesAndOuterEdges)
     }
 }
 
-// The page's table, to the digit.
-TEST(Stam, AsThePaperDrawsItAsManyPointsDifferAsThePageSays)
-{
-    TESSEMU_NEEDS_SHARED("models/bigguy.obj");
-    TESSEMU_NEEDS_SHARED("models/monsterfrog.obj");
-    std::size_t cells_compared = 0;
-    for (auto const& cells : test::table_of("docs/stam.md", "| | spokes | outer edges")) {
-        ASSERT_EQ(cells.size(), 4u);
-        std::string const model = cells[0].substr(0, cells[0].find(',')),
-                          verdict = cells[0].substr(model.size() + 2);
-        WatertightSettings s;
-        s.frame.tess_factor = 7.3f;
-        SchemeOnMesh const on =
-            stam(load_model(test::shared("models/" + model + ".obj").string()).mesh);
-        auto const verdicts = checked(*on.patches, s);
-        std::string const& reason =
-            verdicts.at(verdict.substr(0, verdict.size() - 1)).reason; // "positions"
-        char const* const where[] = {"on a spoke", "on an outer edge",
-                                     "at corners and on other edges"};
-        for (std::size_t k = 0; k < 3; ++k) {
-            std::string const& cell = cells[k + 1];
-            std::size_t const of = cell.find(" of ");
-            ASSERT_NE(of, cell.npos);
-            std::string const words =
-                cell.substr(0, of) + " points" + cell.substr(of) + " differ " + where[k];
-            EXPECT_NE(reason.find(words), reason.npos) << words << " is not in: " << reason;
-            ++cells_compared;
-        }
-    }
-    EXPECT_EQ(cells_compared, 12u);
-}
-
-// Adaptive factors agree all the same: they follow the cage's edges.
-TEST(Stam, AsThePaperDrawsItPatchesAgreeOnAdaptiveFactors)
-{
-    for (char const* name : {"golem", "jug", "spindle"})
-        for (ParameterTexts const& choices : all_choices()) {
-            SchemeOnMesh const on = stam(load_model(name).mesh, choices);
-            WatertightSettings s;
-            s.frame.camera = frame_points(on.mesh->base().positions, {0.5f, 0.4f, 1}, 1);
-            s.frame.adaptive = {AdaptiveFactors::Kind::Pixels, 0.5f};
-            auto const verdicts = checked(*on.patches, s);
-            EXPECT_EQ(verdicts.at("topology").verdict, Verdict::Pass)
-                << name << ", " << choices[0].second << ", " << choices[1].second;
-        }
-}
-
-// All points of all shared edges, plain and displaced, at rest and in a pose, under contraction:
-// every kind of patch beside every other.
-TEST(Stam, WithSharedEdgesAllHolds)
-{
-    std::vector<std::pair<std::string, ControlMesh>> meshes;
-    for (char const* name : {"golem", "jug", "spindle", "saddle_star"})
-        meshes.emplace_back(name, load_model(name).mesh);
-    meshes.emplace_back("trapezohedron 13", test::trapezohedron(13).mesh);
-    meshes.emplace_back("valence 2", with_valence_two());
-    for (auto const& [name, mesh] : meshes)
-        for (char const* regular : {"bezier", "bspline"}) {
-            ParameterTexts choices = kShared;
-            choices.emplace_back("regular", regular);
-            SchemeOnMesh const on = stam(mesh, choices);
-            auto const pose = std::make_shared<Pose>(SpineRig(on.mesh->base()).sway(0.3));
-            for (int i = 0; i < 6; ++i) {
-                WatertightSettings s;
-                s.frame.tess_factor = i % 2 ? 6.6f : 3;
-                s.frame.machine.contraction = Contraction(i % 3);
-                s.frame.machine.seed = std::uint64_t(i);
-                s.frame.displacement =
-                    std::make_shared<Displacement>(Displacement::studs(0.2f, 0.02f));
-                if (i >= 3) s.frame.pose = pose;
-                auto const verdicts = checked(*on.patches, s);
-                for (char const* verdict : {"topology", "position", "normal", "displaced"}) {
-                    CheckedVerdict const& v = verdicts.at(verdict);
-                    EXPECT_EQ(v.verdict, Verdict::Pass)
-                        << name << ", " << regular << ", " << i << ": " << verdict << ": "
-                        << (v.sites.empty() ? "" : v.sites[0].text);
-                }
-            }
-        }
-}
-
 // A hidden face has no patch: its neighbours around the vertex evaluate their spoke by themselves.
 TEST(Stam, SpokesBesideAHoleAreTheirOwn)
 {
@@ -485,14 +287,6 @@ TEST(Stam, SpokesBesideAHoleAreTheirOwn)
         EXPECT_LE(e.position_statistics().max, 2e-6);
     }
     EXPECT_EQ(checked(*shared.patches, {}).at("position").verdict, Verdict::Pass);
-}
-
-// Mistakes of shared edges have no place where edges are not shared.
-TEST(Stam, AsThePaperDrawsItMistakesOfSharedEdgesAreRefused)
-{
-    SchemeOnMesh const on = stam(load_model("golem").mesh);
-    for (Mistake m : {Mistake::Order, Mistake::Contraction, Mistake::Normals, Mistake::Weights})
-        EXPECT_THROW(with_mistake(*on.patches, plant_mistake(*on.mesh, m), {}), Error);
 }
 
 } // namespace

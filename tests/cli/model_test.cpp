@@ -307,6 +307,35 @@ TEST(Program, TheValenceViewPrintsTheColorsThatOccur)
     EXPECT_NE(refused.err.find("valence"), std::string::npos) << refused.err;
 }
 
+// Of an animation one range serves all frames.
+TEST(Program, TheCurvatureViewPrintsItsRangeInTheFilesUnits)
+{
+    std::string const options = " --scheme stam --size 32x32 --view curvature";
+    Json const home = draw_json("golem" + options);
+    double const range = home["config"]["curvature_max"];
+    for (int k : {-40, 40}) {
+        std::string const cage = cage_elsewhere("golem", k).string();
+        Json const away = draw_json(cage + options);
+        EXPECT_EQ(away["config"]["curvature_max"], std::ldexp(range, -k)) << k;
+        char given[60];
+        std::snprintf(given, sizeof given, " --curvature-max %.17g", std::ldexp(2, -k));
+        EXPECT_EQ(draw_json(cage + options + given)["config"]["curvature_max"], std::ldexp(2, -k));
+    }
+    Result const closed = run("draw golem" + options + " --curvature-max 2.5");
+    EXPECT_EQ(closed.out.find("mean curvature, 1/unit of length: blue -2.5 and below, white 0, red "
+                              "2.5 and above\n\n"),
+              0u)
+        << closed.out;
+    Result const open = run("draw jug" + options);
+    EXPECT_NE(open.out.find("\n64 patches without second derivatives: grey\n\n"), std::string::npos)
+        << open.out;
+    double const moving =
+        draw_json("golem" + options + " --animate sway --frames 4")["config"]["curvature_max"];
+    for (char const* phase : {"0", "0.25", "0.5", "0.75"})
+        EXPECT_GE(moving, draw_json("golem" + options + " --animate sway --phase " +
+                                    phase)["config"]["curvature_max"]);
+}
+
 TEST(Program, MatricesMadeAheadChangeNothingThatIsDrawnOrCounted)
 {
     Json const a = draw_json("golem --subdivide 1 --size 64x64 --tess 3"),
@@ -346,7 +375,8 @@ TEST(Program, FacesOfAnyKindAreDrawnWithWarningsThatCountThem)
     EXPECT_TRUE(fs::exists(out));
     for (char const* warning :
          {"fin.obj:16: face 5 names a vertex twice in a row and loses the repetition\n",
-          "fin.obj:19: face 8 has fewer than three different vertices, or names one twice, not in a "
+          "fin.obj:19: face 8 has fewer than three different vertices, or names one twice, not in "
+          "a "
           "row: left out\n",
           "fin.obj:11: vertex 11 is in no face: left out\n",
           "fin.obj:1: an edge at vertex 1 has more than two faces",

@@ -10,6 +10,7 @@
 #include "tests/support/files.h"
 #include "tests/support/machines.h"
 #include "tests/support/shapes.h"
+#include "tests/support/stam_evaluation.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -23,47 +24,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// A valence's tables, and nets in eigen space.
-template <class F> struct Evaluation {
-    StamEigen eigen;
-    std::vector<F> splines, powers, projected;
-
-    explicit Evaluation(int valence) : eigen(stam_eigen(valence))
-    {
-        auto const size = std::size_t(eigen.functions());
-        for (auto const& spline : eigen.splines)
-            for (std::size_t f = 0; f < size; ++f)
-                for (std::size_t p = 0; p < 16; ++p) splines.push_back(F(spline[p * size + f]));
-        std::vector<double> power(size, 1);
-        for (int k = 0; k < kStamRings; ++k)
-            for (std::size_t f = 0; f < size; ++f) {
-                powers.push_back(F(power[f]));
-                power[f] *= eigen.eigenvalues[f];
-            }
-    }
-    StamTables<F> tables() const
-    {
-        return {eigen.functions(), {splines, 0, "splines"}, {powers, 1, "powers"}};
-    }
-    // As the hull shader does, in the order of the net.
-    void project(Json const& net)
-    {
-        auto const size = std::size_t(eigen.functions());
-        projected.assign(3 * size, F(0));
-        for (std::size_t f = 0; f < size; ++f)
-            for (std::size_t p = 0; p < size; ++p)
-                for (std::size_t k = 0; k < 3; ++k)
-                    projected[3 * f + k] += F(eigen.inverse[f * size + p]) * F(double(net[p][k]));
-    }
-    TangentFrame<F> at(double u, double v) const
-    {
-        auto const point = [&](int i) {
-            F const* const p = projected.data() + 3 * i;
-            return float3<F>(p[0], p[1], p[2]);
-        };
-        return stam_quad<F>(tables(), point, F(u), F(v));
-    }
-};
+using test::Evaluation;
 
 // How large the terms of a sum get: the formula with every number replaced by its size and every
 // difference by a sum, in double. A result with L roundings on the way of any input is off by at

@@ -54,6 +54,8 @@ public:
             "ACC: bicubics with separate tangent patches, 25 control points; quads only"};
         info.takes.triangles = false;
         info.takes.edges = StencilForm::kMostEdges;
+        info.no_curvature = "its normals are those of tangent patches, not of the positions, which "
+                            "have kinks at the edges of irregular patches";
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,

@@ -108,6 +108,7 @@ public:
                         IsolatedNets::requirements(),
                         IsolatedNets::parameters(),
                         IsolatedNets::watertight_with()};
+        info.takes.edges = StencilForm::kMostEdges;
         info.no_curvature = {};
         return info;
     }

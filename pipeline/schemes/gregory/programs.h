@@ -15,6 +15,10 @@ namespace tessemu {
 
 /// Of both forms.
 std::vector<SchemeParameter> gregory_parameters();
+/// SchemeInfo::no_curvature
+inline constexpr char const* kNoGregoryCurvature =
+    "its irregular patches are rational and share the tangent plane alone with their neighbours, "
+    "so curvature jumps at their edges";
 
 /// All of them for a machine's scalar T; `instantiate` is template, or extern template.
 #define TESSEMU_GREGORY_PROGRAMS(instantiate, T)                                                   \

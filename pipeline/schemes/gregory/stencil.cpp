@@ -77,6 +77,7 @@ public:
                                    {},
                                    {"demand", "ahead"}});
         info.takes.edges = StencilForm::kMostEdges;
+        info.no_curvature = kNoGregoryCurvature;
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,

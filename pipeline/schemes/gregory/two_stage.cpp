@@ -86,6 +86,7 @@ public:
             {},
             gregory_parameters()};
         info.takes.edges = CornerWindow::kMost;
+        info.no_curvature = kNoGregoryCurvature;
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,

@@ -35,6 +35,9 @@ public:
             "Phong tessellation: triangles pulled towards their vertices' tangent planes"};
         info.takes.quads = false;
         info.takes.steps_with_polygons = 0; // which would be quads
+        info.no_curvature =
+            "its normals are blended from the vertices', not those of the positions, "
+            "which have kinks at the edges";
         info.parameters = {{"alpha", "how far, 0: flat", 0.75, 0, 1}};
         return info;
     }

@@ -63,6 +63,9 @@ public:
             "for a triangle; closed meshes only"};
         info.takes.boundary = false;
         info.takes.edges = RingLayout::kEdges;
+        info.no_curvature =
+            "its irregular patches are quartic triangles that share the tangent plane "
+            "alone, so curvature jumps at their edges and inside them";
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
