@@ -44,6 +44,12 @@ double idle_lanes(GpuModel const& m, PipelineStatistics const& p)
     return run / useful;
 }
 
+// Without rasterization nobody counts them, and none has to be made.
+double tessellated_triangles(PipelineStatistics const& p)
+{
+    return double(p.GSInvocations ? p.GSInvocations : p.CInvocations);
+}
+
 } // namespace
 
 double fetch_count(FetchStatistics const& f)
@@ -88,7 +94,9 @@ DrawCost estimate_cost(GpuModel const& m, DrawStatistics const& s)
         if (stage.stage == "stream_output" || stage.stage == "output_merger")
             c.memory_bytes += double(stage.output_bytes);
         c.memory = c.memory_bytes / m.bandwidth;
-        if (stage.stage == "tessellator") c.fixed = double(p.DSInvocations) / m.tessellator;
+        if (stage.stage == "tessellator")
+            c.fixed = std::max(double(p.DSInvocations) / m.tessellator,
+                               tessellated_triangles(p) / m.tessellated_triangles);
         if (stage.stage == "rasterizer")
             c.fixed =
                 std::max(double(p.CInvocations) / m.setup, double(p.PSInvocations) / m.raster);

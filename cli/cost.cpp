@@ -5,12 +5,13 @@
 
 #include "cli/job.h"
 #include "cli/verbs.h"
-#include "io/figure.h"
 #include "io/gpu_file.h"
 #include "io/image_writer.h"
+#include "io/plot.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace tessemu {
@@ -53,9 +54,11 @@ int run(CostRequest o)
     add_run(job.header, job, threads, clock.seconds());
     DrawCost const cost = estimate_cost(gpu, statistics);
     CostSummary summary{gpu.name, cost.bound, gpu.overhead, cost.shaders, cost.seconds, {}, {}};
+    double fetches = gpu.any_fetch; // of the fastest kind
+    for (auto const& [kind, rate] : gpu.fetch) fetches = std::max(fetches, rate);
     Roofline roofline{fmt::format("{} on {}", as_utf8(job.header.inputs[0].first), gpu.name),
                       gpu.arithmetic,
-                      16 * gpu.any_fetch,
+                      16 * fetches,
                       {}};
     for (StageCost const& s : cost.stages) {
         summary.rows.push_back({s.stage, s.bound(), s.arithmetic, s.fetch, s.memory, s.fixed,
@@ -66,7 +69,7 @@ int run(CostRequest o)
                 {s.stage, s.operations / (16 * s.fetches), s.operations / s.seconds()});
     }
     summary.sources.assign(gpu.sources.begin(), gpu.sources.end());
-    if (picture) write_roofline(roofline, *picture);
+    if (picture) write_plots(plot_of(roofline), *picture);
     out.finish([&] { return cost_report(job.header, summary); }, cost_table(summary));
     return 0;
 }

@@ -77,17 +77,29 @@ void show(PaperTable const& table, ReportHeader const& header, RunOutput& out)
                paper_table(table.title, rows, table.remarks));
 }
 
+void show(PaperPlots const& plots, OutputFile& picture, ReportHeader const& header, RunOutput& out)
+{
+    write_plots(plots.sheet, picture);
+    std::vector<ClaimRow> rows;
+    for (PaperClaim const& c : plots.claims)
+        rows.push_back({c.letter, c.claim, std::string(name_of(c.verdict)), c.criterion, c.ours,
+                        c.bound, c.other_readings});
+    out.finish([&] { return plots_report(header, plots.title, plots.sheet, rows, plots.remarks); },
+               picture.path().string() + "\n" +
+                   plots_table(plots.title, plots.sheet, rows, plots.remarks));
+}
+
 int run(ReproduceRequest const& o)
 {
     PaperItem const& item = *o.item;
     std::string const output = o.output.empty() ? item.name + ".png" : o.output;
-    if (item.figure && !o.run.json.empty())
-        throw Error("--json is of tables; " + item.name + " is a picture");
-    if (!item.figure && !o.output.empty())
+    if (!item.makes_numbers() && !o.run.json.empty())
+        throw Error("--json is of tables and curves; " + item.name + " is a picture");
+    if (!item.makes_picture() && !o.output.empty())
         throw Error("-o is of pictures; " + item.name + " is a table, which --json writes");
     if (o.level && item.level == 0) throw Error("--level: " + item.name + " has no level");
     RunOutput out(o.run.json);
-    OutputFile* const picture = item.figure ? &out.add(output) : nullptr;
+    OutputFile* const picture = item.makes_picture() ? &out.add(output) : nullptr;
     if (picture) picture_format(*picture); // or refuses
     ReportHeader header{"reproduce", {{"name", item.name}}, {}, {}, {}};
     PaperInput const in = load_input(o, header);
@@ -99,8 +111,10 @@ int run(ReproduceRequest const& o)
     auto const result = item.run(in, threads, [&](std::size_t n, std::size_t all) { bar(n, all); });
     bar.clear();
     header.run = {{"threads", std::int64_t(threads.threads())}, {"seconds", clock.seconds()}};
-    if (item.figure)
-        show(std::get<PaperFigure>(result), *picture, out);
+    if (auto const* const figure = std::get_if<PaperFigure>(&result))
+        show(*figure, *picture, out);
+    else if (auto const* const plots = std::get_if<PaperPlots>(&result))
+        show(*plots, *picture, header, out);
     else
         show(std::get<PaperTable>(result), header, out);
     return 0;
@@ -142,9 +156,9 @@ std::string examples()
         auto const i = std::find_if(paper_items().begin(), paper_items().end(), wanted);
         if (i != paper_items().end()) out += "  tessemu reproduce " + i->name + rest + "\n";
     };
-    example("", [](PaperItem const& i) { return !i.figure && !has_model(i, true); });
+    example("", [](PaperItem const& i) { return !i.makes_picture() && !has_model(i, true); });
     example(" --models cages", [](PaperItem const& i) { return has_model(i, true); });
-    example(" -o figure.png", [](PaperItem const& i) { return i.figure; });
+    example(" -o figure.png", [](PaperItem const& i) { return i.makes_picture(); });
     out += "\nNames:";
     for (PaperItem const& i : paper_items()) out += fmt::format("\n  {:<18} {}", i.name, i.about);
     return out;
@@ -156,7 +170,8 @@ void add_reproduce(CommandLine& program)
 {
     auto const o = std::make_shared<ReproduceRequest>();
     Verb& verb = program.add_verb(
-        "reproduce", "a paper's table or figure: its numbers, ours and the ratio; or pictures",
+        "reproduce",
+        "a paper's table or figure: its numbers, ours and the ratio; pictures; curves and claims",
         examples());
     verb.required("NAME", o->item, parse_item, "a table or figure, see below");
     verb.option("--models", o->models, plain,

@@ -28,18 +28,4 @@ struct Figure {
 /// computer without the font DejaVu Sans.
 void write_figure(Figure const& figure, OutputFile& out);
 
-/// Arithmetic against fetches: what stages do, under what the GPU can.
-struct Roofline {
-    struct Point {
-        std::string label;
-        double operations_per_byte, operations_per_second;
-    };
-    std::string title;
-    double operations_per_second; ///< the flat roof; infinite where it is not known
-    double bytes_per_second;      ///< the slope
-    std::vector<Point> points;
-};
-/// Both axes logarithmic. As write_figure.
-void write_roofline(Roofline const& roofline, OutputFile& out);
-
 } // namespace tessemu

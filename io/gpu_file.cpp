@@ -29,10 +29,11 @@ public:
 
     GpuModel read()
     {
-        static char const* const kKnown[] = {"name",         "about",   "clocks",    "arithmetic",
-                                             "special",      "fetch",   "bandwidth", "cache_bytes",
-                                             "tessellator",  "setup",   "raster",    "group_width",
-                                             "vertex_cache", "overhead"};
+        static char const* const kKnown[] = {"name",        "about",        "clocks",
+                                             "arithmetic",  "special",      "fetch",
+                                             "bandwidth",   "cache_bytes",  "tessellated_triangles",
+                                             "tessellator", "setup",        "raster",
+                                             "group_width", "vertex_cache", "overhead"};
         for (auto const& [key, value] : j_.items())
             if (std::find(std::begin(kKnown), std::end(kKnown), key) == std::end(kKnown))
                 fail("'" + key + "'", "is no number of a GPU");
@@ -47,6 +48,7 @@ public:
         rate("special", m_.special);
         rate("bandwidth", m_.bandwidth);
         rate("tessellator", m_.tessellator);
+        rate("tessellated_triangles", m_.tessellated_triangles);
         rate("setup", m_.setup);
         rate("raster", m_.raster);
         if (j_.contains("fetch")) read_fetch();

@@ -3,8 +3,8 @@
 //     {"name": "...", "about": "...",
 //      "clocks": {"core": {"value": 576e6, "source": "..."}},
 //      "arithmetic": {"value": 192, "per": "core", "source": "..."},   // per a clock, or "second"
-//      "special": ..., "fetch": {"any": ..., "texture": ...}, "bandwidth": ..., "tessellator": ...,
-//      "setup": ..., "raster": ...,
+//      "special": ..., "fetch": {"any": ..., "texture": ...}, "bandwidth": ...,
+//      "tessellator": ..., "tessellated_triangles": ..., "setup": ..., "raster": ...,
 //      "cache_bytes": {"value": 229376, "source": "..."}, "group_width": ..., "vertex_cache": ...,
 //      "overhead": {"value": 0.6e-3, "per": "draw", "source": "..."}}
 //

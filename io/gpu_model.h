@@ -22,9 +22,9 @@ struct GpuModel {
     std::map<ResourceKind, double> fetch;
     double bandwidth = kUnknown; ///< bytes to and from memory
     double cache_bytes = 0;      ///< in front of buffers and textures
-    double tessellator = kUnknown, setup = kUnknown,
-           raster = kUnknown; ///< points, triangles, pixels
-    int group_width = 1;      ///< invocations that run together
+    double tessellator = kUnknown, tessellated_triangles = kUnknown; ///< its points, its triangles
+    double setup = kUnknown, raster = kUnknown;                      ///< triangles, pixels
+    int group_width = 1; ///< invocations that run together
     VertexCacheModel vertex_cache;
     double overhead = 0; ///< seconds a draw costs whatever it does
     /// Where each number comes from, by its place in the file.

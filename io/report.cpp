@@ -364,6 +364,38 @@ std::string paper_report(ReportHeader const& header, std::string const& title,
     return finish(std::move(j), header, [](Sha256&) {});
 }
 
+std::string plots_report(ReportHeader const& header, std::string const& title,
+                         PlotSheet const& sheet, std::vector<ClaimRow> const& claims,
+                         std::vector<std::string> const& remarks)
+{
+    Json j = start(header);
+    j["title"] = title;
+    j["x"] = sheet.x.name;
+    j["y"] = sheet.y.name;
+    j["plots"] = Json::array();
+    for (Plot const& panel : sheet.panels) {
+        Json plot{{"title", panel.title}, {"curves", Json::array()}};
+        for (PlotSeries const& s : panel.series) {
+            Json curve{{"name", s.name}, {"points", Json::array()}};
+            for (PlotPoint const& p : s.points)
+                curve["points"].push_back({{"x", p.x}, {"y", p.y}, {"bound", p.label}});
+            plot["curves"].push_back(std::move(curve));
+        }
+        j["plots"].push_back(std::move(plot));
+    }
+    j["claims"] = Json::array();
+    for (ClaimRow const& c : claims)
+        j["claims"].push_back({{"letter", c.letter},
+                               {"claim", c.claim},
+                               {"verdict", c.verdict},
+                               {"criterion", c.criterion},
+                               {"ours", c.ours},
+                               {"bound", c.bound},
+                               {"other_readings", c.other_readings}});
+    j["remarks"] = remarks;
+    return finish(std::move(j), header, [](Sha256&) {});
+}
+
 std::string check_report(ReportHeader const& header, std::vector<VerdictRow> const& verdicts)
 {
     Json j = start(header);

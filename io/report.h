@@ -6,6 +6,7 @@
 #include "emu/graphics_state.h"
 #include "emu/statistics.h"
 #include "io/mesh_writer.h"
+#include "io/plot.h"
 #include "io/tessellator_text.h"
 #include "pipeline/schemes/scheme.h"
 
@@ -115,6 +116,19 @@ std::string paper_report(ReportHeader const& header, std::string const& title,
                          std::vector<PaperRow> const& rows,
                          std::vector<std::string> const& remarks);
 std::string paper_table(std::string const& title, std::vector<PaperRow> const& rows,
+                        std::vector<std::string> const& remarks);
+
+/// A claim of a paper, and whether our figures say it too.
+struct ClaimRow {
+    std::string letter, claim, verdict, criterion, ours, bound;
+    std::vector<std::string> other_readings; ///< what it says under others
+};
+/// reproduce of curves: "plots" with each point and what bounds it, "claims".
+std::string plots_report(ReportHeader const& header, std::string const& title,
+                         PlotSheet const& sheet, std::vector<ClaimRow> const& claims,
+                         std::vector<std::string> const& remarks);
+std::string plots_table(std::string const& title, PlotSheet const& sheet,
+                        std::vector<ClaimRow> const& claims,
                         std::vector<std::string> const& remarks);
 
 /// A verdict of check, and what it fails on.

@@ -27,6 +27,31 @@ std::string histogram(std::vector<std::pair<std::size_t, std::size_t>> const& en
     return out.empty() ? "-" : out;
 }
 
+// Lines of at most 100 characters, broken at blanks; the first after `head`, which is as wide as the
+// indent of the others.
+std::string wrapped(std::string const& head, std::string_view text)
+{
+    constexpr std::size_t kWidth = 100;
+    std::string out = head;
+    std::size_t column = head.size();
+    bool first = true;
+    while (!text.empty()) {
+        std::string_view const word = text.substr(0, text.find(' '));
+        text.remove_prefix(std::min(word.size() + 1, text.size()));
+        if (!first && column + 1 + word.size() > kWidth) {
+            out += "\n" + std::string(head.size(), ' ');
+            column = head.size();
+        } else if (!first) {
+            out += ' ';
+            ++column;
+        }
+        out += word;
+        column += word.size();
+        first = false;
+    }
+    return out + "\n";
+}
+
 // LOOP10's types that the patches are of, those of most patches first.
 std::string valence_table(std::vector<PatchCount> const& patches)
 {
@@ -125,6 +150,37 @@ std::string paper_table(std::string const& title, std::vector<PaperRow> const& r
         row = r.row;
     }
     for (std::string const& remark : remarks) out += "\n" + remark + "\n";
+    return out;
+}
+
+std::string plots_table(std::string const& title, PlotSheet const& sheet,
+                        std::vector<ClaimRow> const& claims,
+                        std::vector<std::string> const& remarks)
+{
+    std::string out = title + "\n";
+    for (Plot const& panel : sheet.panels) {
+        if (panel.series.empty()) continue;
+        out += fmt::format("\n{:<32} {:>16}", panel.title, sheet.x.name);
+        for (PlotPoint const& p : panel.series[0].points) out += fmt::format(" {:>8.6g}", p.x);
+        out += "\n";
+        for (PlotSeries const& s : panel.series) {
+            out += fmt::format("  {:<47}", s.name);
+            for (PlotPoint const& p : s.points)
+                out += p.y < 1000 ? fmt::format(" {:>8.4g}", p.y) : fmt::format(" {:>8.0f}", p.y);
+            out += "\n";
+        }
+    }
+    for (ClaimRow const& c : claims) {
+        out += "\n" + wrapped(fmt::format("({}) ", c.letter), c.claim);
+        out += wrapped("    verdict    ", c.verdict);
+        out += wrapped("    criterion  ", c.criterion);
+        out += wrapped("    ours       ", c.ours);
+        if (!c.bound.empty()) out += wrapped("    bound by   ", c.bound);
+        for (std::string const& reading : c.other_readings)
+            out += wrapped("    otherwise  ", reading);
+    }
+    out += "\n";
+    for (std::string const& remark : remarks) out += wrapped("* ", remark);
     return out;
 }
 

@@ -6,6 +6,7 @@
 
 #include "emu/graphics_state.h"
 #include "io/gpu_model.h"
+#include "io/plot.h"
 #include "pipeline/frame.h"
 
 #include <functional>
@@ -42,6 +43,28 @@ struct PaperFigure {
     std::vector<std::string> remarks;
 };
 
+/// What a paper says in words, and whether our figures say it too.
+struct PaperClaim {
+    enum class Verdict { Holds, DoesNot, CannotFollow };
+    std::string letter; ///< "a"
+    std::string claim;  ///< the paper's, in short
+    Verdict verdict;
+    std::string criterion; ///< what decided
+    std::string ours;      ///< figures
+    std::string bound;     ///< what the times wait for; empty: it is not about times
+    std::vector<std::string> other_readings = {}; ///< what it says under others
+};
+/// "holds", "does not hold", "cannot follow from counters"
+std::string_view name_of(PaperClaim::Verdict verdict);
+
+/// Curves of which the paper prints no numbers: its claims stand for them.
+struct PaperPlots {
+    std::string title;
+    PlotSheet sheet; ///< points' labels say what bounds them
+    std::vector<PaperClaim> claims;
+    std::vector<std::string> remarks;
+};
+
 /// (done, all) steps
 using PaperProgress = std::function<void(std::size_t, std::size_t)>;
 
@@ -60,17 +83,23 @@ struct PaperInput {
     FrameSettings picture; ///< of a figure's panel: size, samples, background, tess factor
 };
 
+/// What comes of an item.
+enum class PaperKind { Table, Figure, Plots };
+
 /// A table or a figure that can be reproduced.
 struct PaperItem {
     std::string name;  ///< "loop09-table1"
     std::string about; ///< a line for the help
-    bool figure = false;
+    PaperKind kind = PaperKind::Table;
     std::vector<PaperModel> models;
     std::vector<std::string> gpus; ///< built-in descriptions
     int level = 0;                 ///< of its comparison; 0: it has none
-    std::function<std::variant<PaperTable, PaperFigure>(PaperInput const&, ThreadPool const&,
-                                                        PaperProgress const&)>
+    std::function<std::variant<PaperTable, PaperFigure, PaperPlots>(
+        PaperInput const&, ThreadPool const&, PaperProgress const&)>
         run;
+
+    bool makes_picture() const { return kind != PaperKind::Table; }
+    bool makes_numbers() const { return kind != PaperKind::Figure; }
 };
 
 /// In the order of the papers.

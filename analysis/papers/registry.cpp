@@ -16,6 +16,18 @@ std::vector<PaperItem> const& paper_items()
     return all;
 }
 
+std::string_view name_of(PaperClaim::Verdict verdict)
+{
+    switch (verdict) {
+    case PaperClaim::Verdict::Holds:
+        return "holds";
+    case PaperClaim::Verdict::DoesNot:
+        return "does not hold";
+    default:
+        return "cannot follow from counters";
+    }
+}
+
 PaperItem const& find_paper_item(std::string_view name)
 {
     std::string known;

@@ -79,6 +79,12 @@ TEST(Cost, AddsArithmeticAndFetchesAndFindsTheBound)
     EXPECT_DOUBLE_EQ(c.shaders, 4.5);
     EXPECT_DOUBLE_EQ(c.seconds, 7.5);
 
+    // The tessellator takes as long as its points or its triangles, whichever is longer.
+    m.tessellated_triangles = 250;
+    EXPECT_DOUBLE_EQ(estimate_cost(m, s).stages[1].fixed, 8);
+    m.tessellated_triangles = 500;
+    EXPECT_DOUBLE_EQ(estimate_cost(m, s).stages[1].fixed, 7);
+
     // What nobody knows bounds nothing.
     GpuModel const unknown;
     EXPECT_EQ(estimate_cost(unknown, s).seconds, 0);
@@ -293,7 +299,8 @@ TEST(GpuFile, RatesArePerClockOrPerSecondAndUnknownWhereTheyAreLeftOut)
     EXPECT_EQ(m.group_width, 32);
     EXPECT_EQ(m.vertex_cache.kind, VertexCacheModel::Kind::Lru);
     EXPECT_EQ(m.vertex_cache.entries, 9u);
-    for (double unknown : {m.special, m.bandwidth, m.tessellator, m.setup, m.raster})
+    for (double unknown :
+         {m.special, m.bandwidth, m.tessellator, m.tessellated_triangles, m.setup, m.raster})
         EXPECT_EQ(unknown, GpuModel::kUnknown);
     EXPECT_EQ(m.overhead, 0);
     std::map<std::string, std::string> const sources{{"clocks.fast", "s1"}, {"arithmetic", "s2"},

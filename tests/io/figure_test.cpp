@@ -5,12 +5,8 @@
 
 #include "io/image_reader.h"
 #include "shaders_cpp/pixel/colored_view.h"
-#include "tests/io/picture_hash.h"
 
 #include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
 
 #include <unistd.h>
 
@@ -31,13 +27,6 @@ void write(Figure const& figure, fs::path const& path)
 {
     OutputFile out(path);
     write_figure(figure, out);
-    out.commit();
-}
-
-void write(Roofline const& roofline, fs::path const& path)
-{
-    OutputFile out(path);
-    write_roofline(roofline, out);
     out.commit();
 }
 
@@ -81,19 +70,6 @@ TEST(Figure, HoldsItsPanelsAndScales)
     EXPECT_THROW(write(Figure{2, {{&red, "a"}, {&other, "b"}}, {}}, path), WriteError);
     EXPECT_THROW(write(Figure{1, {}, {}}, path), WriteError);
     EXPECT_THROW(write(Figure{1, {{&red, "a"}}, {}}, scratch() / "a.bmp"), WriteError);
-    fs::remove_all(scratch());
-}
-
-TEST(Roofline, DrawsWithAndWithoutAKnownRoof)
-{
-    fs::path const path = scratch() / "roof.png";
-    // Stored results of version 0.1.0.
-    write(Roofline{"t", 1e11, 1e10, {{"a", 0.5, 4e9}, {"b", 30, 9e10}}}, path);
-    EXPECT_EQ(test::picture_hash(path), "976a5e47374f5ea3");
-    write(Roofline{"t", std::numeric_limits<double>::infinity(), 1e10, {{"a", 0.5, 4e9}}}, path);
-    EXPECT_EQ(test::picture_hash(path), "5afd7de0497fbaed");
-    EXPECT_THROW(write(Roofline{"t", 1e11, std::numeric_limits<double>::infinity(), {}}, path),
-                 WriteError);
     fs::remove_all(scratch());
 }
 

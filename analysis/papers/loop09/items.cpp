@@ -21,7 +21,7 @@ std::vector<PaperItem> loop09_items()
     std::vector<PaperItem> items;
     items.push_back({"loop09-table1",
                      "times on a Direct3D 11 emulator",
-                     false,
+                     PaperKind::Table,
                      {{"golem"}},
                      {"loop09-emulator"},
                      0,
@@ -32,7 +32,7 @@ std::vector<PaperItem> loop09_items()
                      }});
     items.push_back({"loop09-table2",
                      "frames a second by instanced tessellation",
-                     false,
+                     PaperKind::Table,
                      papers,
                      {"gtx260"},
                      0,
@@ -43,7 +43,7 @@ std::vector<PaperItem> loop09_items()
                      }});
     items.push_back({"loop09-table3",
                      "error against the Catmull-Clark surface",
-                     false,
+                     PaperKind::Table,
                      papers,
                      {},
                      3, // nearest to the paper, see the table's remarks
@@ -54,7 +54,7 @@ std::vector<PaperItem> loop09_items()
     auto const figure = [&](int number, char const* about, std::vector<PaperModel> models) {
         items.push_back({"loop09-figure" + std::to_string(number),
                          about,
-                         true,
+                         PaperKind::Figure,
                          std::move(models),
                          {},
                          0,

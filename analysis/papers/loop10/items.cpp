@@ -3,6 +3,7 @@
 
 #include "analysis/papers/loop10/figure2.h"
 #include "analysis/papers/loop10/figure4.h"
+#include "analysis/papers/loop10/figure5.h"
 #include "analysis/papers/loop10/table1.h"
 
 #include <fmt/format.h>
@@ -27,14 +28,14 @@ std::vector<PaperItem> loop10_items()
     std::vector<PaperItem> items;
     items.push_back({"loop10-figure2",
                      "tables of subdivision of the pyramid",
-                     false,
+                     PaperKind::Table,
                      {},
                      {},
                      0,
                      [](PaperInput const&, auto&, auto&) { return reproduce_loop10_figure2(); }});
     items.push_back({"loop10-table1",
                      "times of the subdivision step",
-                     false,
+                     PaperKind::Table,
                      models,
                      {"radeon5870", "gtx480"},
                      0,
@@ -45,7 +46,7 @@ std::vector<PaperItem> loop10_items()
                      }});
     items.push_back({"loop10-figure4",
                      "patches by the valence of their extraordinary vertex",
-                     true,
+                     PaperKind::Figure,
                      models,
                      {},
                      0,
@@ -53,6 +54,19 @@ std::vector<PaperItem> loop10_items()
                          FrameSettings s = in.picture;
                          s.machine = in.machine;
                          return reproduce_loop10_figure4(in.meshes, s, threads, progress);
+                     }});
+    items.push_back({"loop10-figure5",
+                     "frames a second by tess factor, and the paper's claims",
+                     PaperKind::Plots,
+                     models,
+                     {"radeon5870", "gtx480"},
+                     0,
+                     [](PaperInput const& in, auto& threads, auto& progress) {
+                         FrameSettings s;
+                         s.width = 1280;
+                         s.height = 1024;
+                         s.machine = in.machine;
+                         return reproduce_loop10_figure5(in.meshes, in.gpus, s, threads, progress);
                      }});
     return items;
 }

@@ -1,4 +1,4 @@
-// What of LOOP10 can be reproduced: figure 2, table 1, figure 4.
+// What of LOOP10 can be reproduced: figure 2, table 1, figures 4 and 5.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
