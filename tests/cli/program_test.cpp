@@ -101,7 +101,7 @@ TEST(Program, BadUsageExitsTwoWithOneLineThatNamesTheValue)
              {"reproduce loop09-table2 --models nowhere", "nowhere/monsterfrog.obj"},
              {"reproduce loop09-table1 -o a.png", "of pictures; loop09-table1 is a table"},
              {"reproduce loop09-figure3 --json -", "picture"},
-             {"reproduce loop10-figure5 --models nowhere", "nowhere/two_hole.obj"},
+             {"reproduce loop10-figure5 --models nowhere --json -", "nowhere/two_hole.obj"},
              {"reproduce loop10-figure5 -o a.bmp", "a.bmp"},
              {"reproduce loop09-table1 --level 2", "no level"},
              {"cost jug --gpu nowhere", "gtx260"},

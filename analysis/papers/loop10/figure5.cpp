@@ -227,24 +227,31 @@ private:
         }
     }
 
-    // Patches of one factor have the same number of points: those of the last step's faces.
+    // Patches of one factor have the same number of points: the children of the last step's faces.
     void measure_samples(std::size_t m)
     {
+        struct Patches {
+            std::uint64_t number = 0, children = 0;
+        };
         auto const extraordinary = [&](int subdivide) {
             BuildOptions options;
             options.subdivide = subdivide;
             SchemeOnMesh const on =
                 build_scheme(find_scheme(schemes_[kGregory1].scheme), meshes_[m], options);
-            std::uint64_t n = 0;
+            Patches out;
             on.patches->commands(frame_of(picture_, on, 1))
                 .for_each_surface_draw([&](Draw const& d) {
-                    if (d.kind.patch_class != PatchClass::RegularQuad) n += d.patches.size();
+                    if (d.kind.patch_class == PatchClass::RegularQuad) return;
+                    std::uint64_t const n = d.patches.size();
+                    out.number += n;
+                    out.children += n * (d.kind.patch_class == PatchClass::Triangle ? 3 : 4);
                 });
-            return n;
+            return out;
         };
         constexpr std::uint64_t kPoints = 17 * 17; // of a child, at factor 16 of it
-        std::uint64_t const before = extraordinary(steps(m) - 1), after = extraordinary(steps(m));
-        measures_.samples[m] = {(4 * before - after) * kPoints, 4 * before * kPoints};
+        std::uint64_t const all = extraordinary(steps(m) - 1).children,
+                            left = extraordinary(steps(m)).number;
+        measures_.samples[m] = {(all - left) * kPoints, all * kPoints};
     }
 
     PlotSheet sheet(Figure5Times const& times) const
