@@ -81,7 +81,7 @@ for compiler in g++ clang++; do
         done
         # The golem is quads with texture coordinates, the spindle triangles without: no image can
         # displace it, and the error view has no quads to compare.
-        for scheme in gregory-stencil gregory-two-stage acc pm phong stam; do
+        for scheme in gregory-stencil gregory-two-stage acc pm phong stam biseptic; do
             cage=golem
             variants=("--contraction none" "--contraction mixed:5" "--tess-edge pixels=6"
                 "--displace studs --animate sway --phase 0.3 --contraction mixed:5" "--direct3d 10")
@@ -91,6 +91,11 @@ for compiler in g++ clang++; do
                 variants+=("--displace docs/images/roofline.png --contraction all"
                     "--view error --level 3")
             fi
+            if [ "$scheme" = stam ] || [ "$scheme" = biseptic ]; then
+                variants+=("--view curvature" "--set edges=shared --contraction mixed:5"
+                    "--set edges=shared --set regular=bspline --view curvature")
+            fi
+            variants+=("--view zebra")
             for run in "1 4" "3 8" "8 16"; do
                 read -r threads lanes <<<"$run"
                 what="$compiler -$level -j $threads --lanes $lanes"
