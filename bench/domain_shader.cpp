@@ -1,10 +1,11 @@
-// Gregory evaluation with unit normals, lanes across the points of a patch, one thread.
+// Evaluation of Gregory and biseptic patches with unit normals, lanes across the points of a patch, one thread.
 //
 // Counters: evaluations per second, multiplications and all operations per point. The limit to
 // compare with is a hand-written kernel, built with contraction off for the same instruction set;
 // scripts/bench.sh runs both in turn where the kernel is at hand.
 //
 // SPDX-License-Identifier: Apache-2.0
+#include "shaders_cpp/biseptic/biseptic_domain_shaders.h"
 #include "shaders_cpp/gregory/domain_shaders.h"
 
 #include <benchmark/benchmark.h>
@@ -19,12 +20,12 @@ namespace {
 template <class Inside> struct Evaluation {
     static constexpr TessellatorDomain kDomain = Inside::kDomain;
     static constexpr int kControlPoints = Inside::kControlPoints;
-    template <class T> using ControlPoint = ControlVertex<T>;
+    template <class T> using ControlPoint = typename Inside::template ControlPoint<T>;
     template <class T> using PatchConstant = EdgeRegister<T>;
     template <class T> using Output = SurfacePoint<T>;
     template <class T>
     SurfacePoint<T> operator()(DomainInput<T> const& in,
-                               ControlPoints<ControlVertex<T>> const& patch,
+                               ControlPoints<ControlPoint<T>> const& patch,
                                ControlPoints<EdgeRegister<T>> const&) const
     {
         TangentFrame<T> const s = Inside::template evaluate<T>(patch, in, false);
@@ -60,8 +61,11 @@ struct Workload {
     }
 };
 
+/// \param per_patch  vectors of a patch
+/// \param packed     of these in a control point
 template <class Shader, class T, class Check = Lanes<4>>
-void run(benchmark::State& state, int per_patch, Contraction contraction = Contraction::None)
+void run(benchmark::State& state, int per_patch, Contraction contraction = Contraction::None,
+         int packed = 1)
 {
     Workload w(int(state.range(0)), per_patch);
     DomainProgramOn<Shader, T> const program;
@@ -71,7 +75,7 @@ void run(benchmark::State& state, int per_patch, Contraction contraction = Contr
     std::uint64_t evaluations = 0;
     auto const batch = [&](std::size_t p, std::vector<float>& out) {
         return DomainBatch{w.control_points.data() + p * std::size_t(per_patch) * 3,
-                           per_patch,
+                           per_patch / packed,
                            w.registers.data(),
                            24,
                            std::int32_t(p),
@@ -116,6 +120,7 @@ void run(benchmark::State& state, int per_patch, Contraction contraction = Contr
 using Quad = Evaluation<GregoryQuadInside>;
 using Regular = Evaluation<RegularQuadInside>;
 using Triangle = Evaluation<GregoryTriangleInside>;
+using Biseptic = Evaluation<BisepticInside>;
 
 void gregory_quad_uncounted(benchmark::State& s)
 {
@@ -146,6 +151,11 @@ void gregory_triangle_counted(benchmark::State& s)
     run<Triangle, Counted<Lanes<kNativeLanes>>>(s, 15);
 }
 
+void biseptic_quad_counted(benchmark::State& s)
+{
+    run<Biseptic, Counted<Lanes<kNativeLanes>>>(s, 64, Contraction::None, BisepticInside::kPacked);
+}
+
 BENCHMARK(gregory_quad_uncounted)->Arg(17)->Arg(64)->Unit(benchmark::kMillisecond);
 BENCHMARK(gregory_quad_counted)->Arg(17)->Arg(64)->Unit(benchmark::kMillisecond);
 BENCHMARK(gregory_quad_counted_contracted)->Arg(17)->Arg(64)->Unit(benchmark::kMillisecond);
@@ -153,6 +163,7 @@ BENCHMARK(gregory_quad_counted_8_lanes)->Arg(17)->Arg(64)->Unit(benchmark::kMill
 BENCHMARK(gregory_quad_whole_domain_shader)->Arg(17)->Arg(64)->Unit(benchmark::kMillisecond);
 BENCHMARK(regular_quad_counted)->Arg(17)->Arg(64)->Unit(benchmark::kMillisecond);
 BENCHMARK(gregory_triangle_counted)->Arg(17)->Arg(64)->Unit(benchmark::kMillisecond);
+BENCHMARK(biseptic_quad_counted)->Arg(17)->Arg(64)->Unit(benchmark::kMillisecond);
 
 } // namespace
 } // namespace tessemu

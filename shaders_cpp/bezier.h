@@ -73,21 +73,19 @@ constexpr FrameOn<T, Basis> tensor_product(Net const& net, T u, T v)
     constexpr int N = int(std::extent_v<decltype(Basis::b)>);
     Basis const U(u), V(v);
     FrameOn<T, Basis> s;
-    auto const sum = [](T const(&weight)[N], T const(&x)[N]) -> T {
-        return [&]<int... j>(std::integer_sequence<int, j...>)->T
-        {
-            return (... + (weight[j] * x[j]));
-        }
-        (std::make_integer_sequence<int, N>());
-    };
     unrolled<N>([&](auto i) {
         float3<T> b[N];
         unrolled<N>([&](auto j) { b[j] = net(i, j); });
         components([&](auto of) {
-            T x[N];
-            unrolled<N>([&](auto j) { x[j] = of(b[j]); });
-            T const row = sum(V.b, x);
-            T const row_dv = sum(V.d, x);
+            auto const sum = [&](T const(&weight)[N]) -> T {
+                return [&]<int... j>(std::integer_sequence<int, j...>)->T
+                {
+                    return (... + (weight[j] * of(b[j])));
+                }
+                (std::make_integer_sequence<int, N>());
+            };
+            T const row = sum(V.b);
+            T const row_dv = sum(V.d);
             if constexpr (i == 0) {
                 of(s.position) = U.b[0] * row;
                 of(s.du) = U.d[0] * row;
@@ -98,7 +96,7 @@ constexpr FrameOn<T, Basis> tensor_product(Net const& net, T u, T v)
                 of(s.dv) = of(s.dv) + U.b[i] * row_dv;
             }
             if constexpr (SecondOrderBasis<Basis>) {
-                T const row_dvv = sum(V.dd, x);
+                T const row_dvv = sum(V.dd);
                 T const zero(0);
                 of(s.duu) = (i == 0 ? zero : of(s.duu)) + U.dd[i] * row;
                 of(s.duv) = (i == 0 ? zero : of(s.duv)) + U.d[i] * row_dv;
