@@ -192,7 +192,7 @@ HullShader bind_stencil_hull_shader(Shader hs, int points, std::span<float const
 
 /// A hull shader with a StencilHullShader's members, of patches that are not wide.
 ///
-/// 	param Shader  of SummedRows
+/// \tparam Shader  of SummedRows
 /// \param points   its output control points that are rows
 template <class Shader>
 HullShader summed_hull_shader(StencilBuffers const& buffers, int points,
@@ -205,7 +205,7 @@ HullShader summed_hull_shader(StencilBuffers const& buffers, int points,
 
 /// The same on the buffers of a kind, wide or not.
 ///
-/// 	param Shader  of Rows
+/// \tparam Shader  of Rows
 template <template <class> class Shader, int kSides>
 HullShader stencil_hull_shader(RowBuffers const& buffers, int points,
                                SurfaceSettings const& settings)

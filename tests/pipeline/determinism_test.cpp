@@ -154,13 +154,23 @@ TEST(Determinism, TheCheckingMachineHasTheFastOnesBitsAndCountsInEveryStageOfEve
                                        "domain_shader",   "geometry_shader", "pixel_shader",
                                        "compute_shader"};
     std::set<std::string> stages;
+    struct Drawn {
+        Scheme const* scheme;
+        ParameterTexts set;
+    };
+    std::vector<Drawn> ways; // those with shared edges of their own too
     for (auto const& scheme : schemes()) {
+        ways.push_back({scheme.get(), {}});
+        if (ParameterTexts const set = scheme->info().watertight_with; !set.empty())
+            ways.push_back({scheme.get(), set});
+    }
+    for (auto const& [scheme, set] : ways) {
         std::set<std::pair<std::string, bool>> shown; // kind of patch, on an open mesh
         std::set<std::size_t> sides;
         for (Cage const& cage : cages()) {
             SchemeOnMesh m;
             try {
-                m = build_scheme(*scheme, cage.mesh);
+                m = build_scheme(*scheme, cage.mesh, {.set = set});
             } catch (MeshError const&) { // does not take it, see schemes_test.cpp
                 continue;
             }
@@ -187,7 +197,8 @@ TEST(Determinism, TheCheckingMachineHasTheFastOnesBitsAndCountsInEveryStageOfEve
                         if (moved) s.pose = pose;
                         v.set(s);
                         if (map && s.view == View::Curvature) continue; // which is refused
-                        SCOPED_TRACE(scheme->info().name + " on " + cage.name + ", " + v.name +
+                        SCOPED_TRACE(scheme->info().name + (set.empty() ? "" : ", shared edges") +
+                                     " on " + cage.name + ", " + v.name +
                                      (map ? ", displaced" : "") + (moved ? ", in a pose" : ""));
                         expect_equal_on_all_machines(*m.patches, s, stages);
                         if (HasFatalFailure()) return;

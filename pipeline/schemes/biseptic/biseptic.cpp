@@ -29,7 +29,7 @@ class BisepticPatches final : public IsolatedNets {
 public:
     BisepticPatches(std::shared_ptr<RefinedMesh const> mesh, Parameters const& parameters)
         : IsolatedNets(std::move(mesh),
-                       {"biseptic quad", "curvature continuous", kMaxBisepticValence,
+                       {"biseptic quad", "of one curvature at the vertex", kMaxBisepticValence,
                         "the derived basis is of vertices inside",
                         "the derived basis is for vertices of " +
                             std::to_string(kMinBisepticValence) + " to " +
@@ -77,7 +77,24 @@ private:
                 }));
         }
         points.emplace_back(std::size_t(inputs), 0.0); // nothing: it fills the last record
-        return rim_stencils(patch, points);
+        PatchStencils out = rim_stencils(patch, points);
+        // At EV the surface's own tangents, along ring edges s and s + 1.
+        int const n = basis.valence();
+        std::vector<int> ring = net;
+        ring.resize(std::size_t(2 * n + 1));
+        auto const tangent = [&](int s) {
+            return row(ring, [&](std::size_t p) {
+                std::size_t const q =
+                    p == 0 ? 0 : 1 + (p - 1 + std::size_t(2 * (n - s))) % std::size_t(2 * n);
+                return basis.weights(1, 0)[q] - basis.weights(0, 0)[q];
+            });
+        };
+        for (int s = 0; s < n; ++s) {
+            auto const first = std::size_t(out.corner_row[0] + 2 * s);
+            out.rows[first] = tangent(s);
+            out.rows[first + 1] = tangent((s + 1) % n);
+        }
+        return out;
     }
     HullShader net_hull_shader(std::size_t, RowBuffers const& buffers,
                                SurfaceSettings const& s) const override
@@ -103,8 +120,8 @@ public:
         SchemeInfo info{"biseptic",
                         "LOOP10",
                         "4.1, 4.3 (after Loop and Schaefer 2008)",
-                        "curvature-continuous surface: patches of degree 7 at extraordinary "
-                        "vertices, a derived basis; regular quads as bicubics",
+                        "one curvature at extraordinary vertices: patches of degree 7 there, of a "
+                        "derived basis; regular quads as bicubics",
                         IsolatedNets::requirements(),
                         IsolatedNets::parameters(),
                         IsolatedNets::watertight_with()};
