@@ -229,6 +229,18 @@ void show_valences(CommandList& list, RefinedMesh const& mesh, FrameSettings con
     });
 }
 
+// Patches without are grey beside others, but a picture of them alone would say nothing.
+void expect_curvature(CommandList const& list)
+{
+    bool patches = false, some = false;
+    list.for_each_surface_draw([&](Draw const& d) {
+        patches = true;
+        some = some || d.has_curvature();
+    });
+    if (patches && !some)
+        throw Error("the curvature view has nothing to show: no patch has second derivatives");
+}
+
 void paint_coverage(FrameSettings const& s, Frame& frame)
 {
     for (int y = 0; y < s.height; ++y)
@@ -259,6 +271,7 @@ void draw_frame(PatchMesh const& mesh, FrameSettings const& s, ThreadPool const&
         raster.coverage = frame.coverage.get();
     }
     CommandList list = frame_commands(mesh, s, seen_surface(s));
+    if (s.view == View::Curvature) expect_curvature(list);
     if (s.view == View::Valence)
         show_valences(list, mesh.mesh(), s);
     else

@@ -78,7 +78,7 @@ struct Frame {
 /// and samples. The wire view draws the surface first and then its edges over it, and counts both;
 /// the valence view paints patches by PatchValence, and takes no Direct3D 10 path, whose pixels do
 /// not know their patch: throws Error; the curvature view shows draws without a curvature in grey,
-/// and throws Error for a displaced surface;
+/// and throws Error for a displaced surface, and where no draw has one;
 /// the coverage view paints how often a pixel's first sample was covered: grey not at all, blue to
 /// white an even number of times, orange an odd number.
 void draw_frame(PatchMesh const& mesh, FrameSettings const& settings, ThreadPool const& threads,

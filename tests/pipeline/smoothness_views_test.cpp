@@ -307,6 +307,12 @@ TEST(CurvatureView, IsRefusedOfADisplacedSurface)
     EXPECT_THROW(pixels(*m.patches, s), Error);
 }
 
+TEST(CurvatureView, IsRefusedWhereNoPatchHasOne)
+{
+    SchemeOnMesh const m = on("phong", load_model("spindle").mesh, {});
+    EXPECT_THROW(pixels(*m.patches, settings_for(m, View::Curvature)), Error);
+}
+
 TEST(CurvatureView, ASchemeWithoutItSaysWhyAndWhichHaveIt)
 {
     std::size_t refused = 0, taken = 0;
