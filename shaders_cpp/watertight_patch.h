@@ -79,8 +79,8 @@ constexpr SurfacePoint<T> edge_point(EdgeCurve<T> const& edge, float3<T> const (
 ///         static constexpr TessellatorDomain kDomain;       // Quad or Tri
 ///         static constexpr int kControlPoints;
 ///         template <class T> using ControlPoint = ...;
-///         template <class T> static TangentFrame<T> evaluate(
-///             ControlPoints<ControlPoint<T>> const&, DomainInput<T> const&, bool true_normals);
+///         template <class T> TangentFrame<T> evaluate(ControlPoints<ControlPoint<T>> const&,
+///             DomainInput<T> const&, bool true_normals) const;
 ///             // or (ControlPoints<...> const&, ControlPoints<EdgeRegister<T>> const&,
 ///             //     DomainInput<T> const&), where the scheme keeps registers behind the corners'
 ///         template <class T> static EdgeCurve<T> edge(
@@ -89,13 +89,15 @@ constexpr SurfacePoint<T> edge_point(EdgeCurve<T> const& edge, float3<T> const (
 ///             ControlPoints<ControlPoint<T>> const&, int i);
 ///         template <class T> static float3<T> corner_normal(
 ///             ControlPoints<EdgeRegister<T>> const&, int i);
-///         // Optional: edges that are no cubics, in the same routine from both sides; t runs from
-///         // corner k. Point and normal direction; the edge's registers tell whether it is collapsed.
+///         // Optional: edges that are no cubics, by the same routine from both sides; t runs from
+///         // corner k. Point and normal direction, which does not count where the edge's registers
+///         // are 0: it is collapsed there.
 ///         static bool has_own_edge(int k);
-///         template <class T> static SurfacePoint<T> own_edge(
-///             ControlPoints<ControlPoint<T>> const&, int k, T t);
-///         template <class T> static SecondOrderFrame<T> second_order( // optional: see curvature.h
-///             ControlPoints<ControlPoint<T>> const&, DomainInput<T> const&);
+///         template <class T> SurfacePoint<T> own_edge(ControlPoints<ControlPoint<T>> const&,
+///             DomainInput<T> const&, int k, T t) const;
+///         template <class T> SecondOrderFrame<T> second_order( // optional: see curvature.h
+///             ControlPoints<ControlPoint<T>> const&, DomainInput<T> const&) const;
+///         std::vector<ResourceInfo> resources() const; // optional
 ///     };
 ///
 /// Quad domain: corners p0 (0,0), p1 (1,0), p2 (1,1), p3 (0,1). Tri domain: u = 1 at p0, v = 1 at
@@ -111,7 +113,12 @@ template <class Inside> struct WatertightPatch {
     template <class T> using Registers = ControlPoints<EdgeRegister<T>>;
 
     bool true_normals = false; ///< of interior points, where the scheme tells them from its own
+    Inside inside = {};
 
+    std::vector<ResourceInfo> resources() const requires(requires(Inside i) { i.resources(); })
+    {
+        return inside.resources();
+    }
     template <class T>
     constexpr SurfacePoint<T> operator()(DomainInput<T> const& in, Patch<T> const& patch,
                                          Registers<T> const& registers) const
@@ -120,7 +127,7 @@ template <class Inside> struct WatertightPatch {
         auto boundary = at.on[0] | at.on[1] | at.on[2];
         if constexpr (kSides == 4) boundary = boundary | at.on[3];
         float3<T> const zero(T(0), T(0), T(0));
-        SurfacePoint<T> const inside = when(
+        SurfacePoint<T> const interior = when(
             !boundary,
             [&] {
                 TangentFrame<T> const frame = evaluate<T>(in, patch, registers);
@@ -128,16 +135,16 @@ template <class Inside> struct WatertightPatch {
             },
             SurfacePoint<T>{zero, zero});
         SurfacePoint<T> s = when(
-            boundary, [&] { return boundary_point<T>(patch, registers, at); }, inside);
+            boundary, [&] { return boundary_point<T>(in, patch, registers, at); }, interior);
         s.normal = unit_or(s.normal, [&] { return nearest_corner_normal<T>(registers, in); });
         return s;
     }
     /// Of the inside, on edges too.
     template <class T>
     constexpr auto second_order(Patch<T> const& patch, DomainInput<T> const& in) const
-        requires(requires { Inside::template second_order<T>(patch, in); })
+        requires(requires { this->inside.template second_order<T>(patch, in); })
     {
-        return Inside::template second_order<T>(patch, in);
+        return inside.template second_order<T>(patch, in);
     }
 
 private:
@@ -145,17 +152,17 @@ private:
     constexpr TangentFrame<T> evaluate(DomainInput<T> const& in, Patch<T> const& patch,
                                        Registers<T> const& registers) const
     {
-        if constexpr (requires { Inside::template evaluate<T>(patch, registers, in); })
-            return Inside::template evaluate<T>(patch, registers, in);
+        if constexpr (requires { inside.template evaluate<T>(patch, registers, in); })
+            return inside.template evaluate<T>(patch, registers, in);
         else
-            return Inside::template evaluate<T>(patch, in, true_normals);
+            return inside.template evaluate<T>(patch, in, true_normals);
     }
 
     /// Edges through edge_point in canonical direction, corners from vertex data.
     template <class T>
-    static constexpr SurfacePoint<T> boundary_point(Patch<T> const& patch,
-                                                    Registers<T> const& registers,
-                                                    DomainEdges<kSides, T> const& at)
+    constexpr SurfacePoint<T> boundary_point(DomainInput<T> const& in, Patch<T> const& patch,
+                                             Registers<T> const& registers,
+                                             DomainEdges<kSides, T> const& at) const
     {
         constexpr int N = kSides;
         float3<T> const zero(T(0), T(0), T(0));
@@ -171,7 +178,8 @@ private:
                                             registers[4 * k + 2].vector,
                                             registers[4 * k + 3].vector};
                     if constexpr (requires { Inside::has_own_edge(k); })
-                        if (Inside::has_own_edge(k)) return own_edge_point<T>(patch, W, k, at.t[k]);
+                        if (Inside::has_own_edge(k))
+                            return own_edge_point<T>(in, patch, W, k, at.t[k]);
                     EdgeCurve<T> const e = Inside::template edge<T>(patch, k);
                     auto const back = first.reversed > T(0);
                     T const t = select(back, T(1) - at.t[k], at.t[k]);
@@ -191,10 +199,10 @@ private:
 
     /// Without a normal where the edge is collapsed.
     template <class T>
-    static constexpr SurfacePoint<T> own_edge_point(Patch<T> const& patch, float3<T> const (&W)[4],
-                                                    int k, T t)
+    constexpr SurfacePoint<T> own_edge_point(DomainInput<T> const& in, Patch<T> const& patch,
+                                             float3<T> const (&W)[4], int k, T t) const
     {
-        SurfacePoint<T> s = Inside::template own_edge<T>(patch, k, t);
+        SurfacePoint<T> s = inside.template own_edge<T>(patch, in, k, t);
         T const size = dot(W[0], W[0]) + dot(W[1], W[1]) + dot(W[2], W[2]) + dot(W[3], W[3]);
         s.normal = select(size > T(0), s.normal, float3<T>(T(0), T(0), T(0)));
         return s;

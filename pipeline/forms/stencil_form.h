@@ -133,11 +133,6 @@ protected:
     }
     /// Whether prepared_domain_shader() reads the positions.
     virtual bool reads_positions() const { return false; }
-    /// Bit k: both ends of edge k are the same pole.
-    std::uint32_t collapsed_edges(Neighbourhood const& n) const
-    {
-        return edge_bits(n) >> EdgeBits::kCollapsed;
-    }
 
 private:
     /// In the buffers of all types.

@@ -72,7 +72,9 @@ struct BisepticRowsInside : PackedBiseptic<3, 12>, TangentPairCorners<4> {
         return UnpackedPoints<kPacked, T>(patch)[i].position;
     }
     static constexpr bool has_own_edge(int k) { return k == 0 || k == 3; }
-    template <class T> static constexpr SurfacePoint<T> own_edge(Patch<T> const& patch, int k, T t)
+    template <class T>
+    static constexpr SurfacePoint<T> own_edge(Patch<T> const& patch, DomainInput<T> const&, int k,
+                                              T t)
     {
         UnpackedPoints<kPacked, T> const points(patch);
         int const step = k == 0 ? kBisepticSide : 1;

@@ -93,97 +93,50 @@ private:
 using StamPointsDomainShader = PlainPatch<StamPointsInside>;
 using StamBufferDomainShader = PlainPatch<StamBufferInside>;
 
-/// What StamSharedDomainShader knows of a patch, a word each.
-struct StamPatchWords {
-    static constexpr int kOwner = 0; ///< patch of the draw for which edge 3 is edge 0; or kNone
-    static constexpr int kEdges = 1; ///< bit 0, 1: edge 0, 3 is collapsed, both ends one pole
-    static constexpr int kCount = 2;
-    static constexpr std::uint32_t kNone = 0x7fffffffu;
-};
-
 /// With edges of equal bits from both sides. Outer edges and corners come from vertex data, as in
 /// all patches of the stencil form: the cubic (p, e+, e-, p) and its normal field, which are the
 /// limit surface's there, and the limit normals. A spoke is no cubic: both of its patches evaluate
 /// the net of one of them, of which it is edge 0, by the same routine.
-struct StamSharedDomainShader {
+struct StamSharedInside : CubicEdges<4> {
     static constexpr TessellatorDomain kDomain = TessellatorDomain::Quad;
     static constexpr int kControlPoints = 12; // p, e+, e-, corner by corner
-    template <class T> using ControlPoint = ControlVertex<T>;
-    template <class T> using PatchConstant = EdgeRegister<T>;
-    template <class T> using Output = SurfacePoint<T>;
+    static constexpr std::uint32_t kNoOwner = 0x7fffffffu;
 
-    StamBufferInside inside;
-    Buffer<std::uint32_t> words; ///< [patch][StamPatchWords]
+    StamBufferInside nets;
+    Buffer<std::uint32_t> owners; ///< [patch]: that of the draw for which edge 3 is edge 0
 
     std::vector<ResourceInfo> resources() const
     {
-        std::vector<ResourceInfo> out = inside.resources();
-        out.push_back(words.info());
+        std::vector<ResourceInfo> out = nets.resources();
+        out.push_back(owners.info());
         return out;
     }
     template <class T>
-    SurfacePoint<T> operator()(DomainInput<T> const& in,
-                               ControlPoints<ControlVertex<T>> const& patch,
-                               ControlPoints<EdgeRegister<T>> const& registers) const
+    constexpr TangentFrame<T> evaluate(ControlPoints<ControlVertex<T>> const& patch,
+                                       DomainInput<T> const& in, bool) const
     {
-        std::int32_t const id = in.primitive_id, first = StamPatchWords::kCount * id;
-        std::int32_t const owner = load<T>(words, first + StamPatchWords::kOwner),
-                           edges = load<T>(words, first + StamPatchWords::kEdges);
-        bool const owned = owner == std::int32_t(StamPatchWords::kNone);
-        DomainEdges<4, T> const at = domain_edges<kDomain>(in);
-        mask_of<T> const none(false), outer = at.on[1] | at.on[2];
-        mask_of<T> const corner = (at.on[0] & at.on[3]) | outer;
-        mask_of<T> const spoke = edges & 1 ? none : mask_of<T>(at.on[0] & !corner);
-        mask_of<T> const other_spoke = edges & 2 ? none : mask_of<T>(at.on[3] & !corner);
-        mask_of<T> const within = !(at.on[0] | at.on[3] | outer);
-        mask_of<T> const own =
-            owned ? mask_of<T>(within | spoke | other_spoke) : mask_of<T>(within | spoke);
-        mask_of<T> const of_owner = owned ? none : other_spoke;
-        auto const rim = [&](T u, T v) {
-            // The shader of the patches beside it, whose sums are numbered from its first line.
-            SiteScope<T> const here;
-            if constexpr (ScalarTraits<T>::kSites) site_state.enter(0, 0);
-            return WatertightPatch<Rim>{}({u, v, T(0), id}, patch, registers);
-        };
-        T const zero(0), one(1), half(0.5);
-        SurfacePoint<T> s{{zero, zero, zero}, {zero, zero, zero}};
-        for (int i : loop<T>(2)) // the same places in the source for both
-            s = when(
-                i == 0 ? own : of_owner,
-                [&] {
-                    TangentFrame<T> const f = inside.template of_patch<T>(
-                        i == 0 ? id : owner, i == 0 ? in.u : in.v, i == 0 ? in.v : zero);
-                    return SurfacePoint<T>{f.position, unit_or(cross(f.du, f.dv), [&] {
-                                               return rim(select(in.u > half, one, zero),
-                                                          select(in.v > half, one, zero))
-                                                   .normal;
-                                           })};
-                },
-                s);
-        return when(
-            !(own | of_owner), [&] { return rim(in.u, in.v); }, s);
+        return nets.template evaluate<T>(patch, in, false);
     }
-
-    /// Of the patch's own net, on a spoke of another patch too.
     template <class T>
-    SecondOrderFrame<T> second_order(ControlPoints<ControlVertex<T>> const& patch,
-                                     DomainInput<T> const& in) const
+    constexpr SecondOrderFrame<T> second_order(ControlPoints<ControlVertex<T>> const& patch,
+                                               DomainInput<T> const& in) const
     {
-        return inside.second_order<T>(patch, in);
+        return nets.template second_order<T>(patch, in);
     }
-
-private:
-    // Edges and corners alone.
-    struct Rim : CubicEdges<4> {
-        static constexpr TessellatorDomain kDomain = TessellatorDomain::Quad;
-        static constexpr int kControlPoints = 12;
-        template <class T>
-        static constexpr TangentFrame<T> evaluate(auto const&, DomainInput<T> const&, bool)
-        {
-            float3<T> const zero(T(0), T(0), T(0));
-            return {zero, zero, zero};
-        }
-    };
+    static constexpr bool has_own_edge(int k) { return k == 0 || k == 3; }
+    template <class T>
+    constexpr SurfacePoint<T> own_edge(ControlPoints<ControlVertex<T>> const&,
+                                       DomainInput<T> const& in, int k, T) const
+    {
+        std::int32_t const owner =
+            k == 0 ? in.primitive_id : std::int32_t(load<T>(owners, in.primitive_id));
+        bool const owned = k == 0 || owner == std::int32_t(kNoOwner);
+        Routine<T> const here("stam_spoke");
+        TangentFrame<T> const s = owned ? nets.template of_patch<T>(in.primitive_id, in.u, in.v)
+                                        : nets.template of_patch<T>(owner, in.v, in.u);
+        return {s.position, cross(s.du, s.dv)};
+    }
 };
+using StamSharedDomainShader = WatertightPatch<StamSharedInside>;
 
 } // namespace tessemu

@@ -124,10 +124,9 @@ TEST(Biseptic, AWarningCountsTheFacesBeyondItsValences)
     for (ParameterTexts const& set : {ParameterTexts{}, kShared}) {
         EXPECT_EQ(beyond(biseptic(test::trapezohedron(12).mesh, set)), "");
         SchemeOnMesh const on = biseptic(test::trapezohedron(13).mesh, set);
-        EXPECT_EQ(
-            beyond(on),
-            "26 faces at a vertex of more than 12 edges are Gregory patches, not of one curvature "
-            "at the vertex: the derived basis is for vertices of 3 to 12 edges");
+        EXPECT_EQ(beyond(on), "26 patches at a vertex of more than 12 edges are Gregory patches, "
+                              "not of one curvature "
+                              "at the vertex: the derived basis is for vertices of 3 to 12 edges");
         EXPECT_EQ(patches_of(*on.patches, "Gregory quad"), 26u);
         EXPECT_EQ(patches_of(*on.patches, "biseptic quad of valence 3"), 26u * 3);
     }

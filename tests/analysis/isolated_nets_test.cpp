@@ -55,7 +55,7 @@ TEST_P(IsolatedNets, OnOpenCagesTheFacesAtTheBoundaryAreGregoryPatches)
             std::size_t warnings = 0;
             for (std::string const& w : on.warnings)
                 warnings += w.find(std::to_string(expected) +
-                                   " faces at the boundary are Gregory patches") == 0;
+                                   " patches at the boundary are Gregory patches") == 0;
             EXPECT_EQ(warnings, expected ? 1u : 0u);
             BuildOptions strict;
             strict.strict = true;
@@ -122,7 +122,7 @@ TEST_P(IsolatedNets, AtAVertexOfTwoEdgesAreGregoryPatches)
         EXPECT_EQ(patches_of(*on.patches, "Gregory quad"), 4u * 2);
         std::size_t warnings = 0;
         for (std::string const& w : on.warnings)
-            warnings += w.find("8 faces at a vertex of 2 edges are Gregory patches") == 0;
+            warnings += w.find("8 patches at a vertex of 2 edges are Gregory patches") == 0;
         EXPECT_EQ(warnings, 1u);
     }
 }

@@ -49,7 +49,7 @@ std::vector<int> valences_of(Topology const& topology, int most)
 std::vector<PatchKind> kinds_of(std::string const& name, std::vector<int> const& valences)
 {
     std::vector<PatchKind> out{{"regular quad", PatchClass::RegularQuad},
-                               {"Gregory quad", PatchClass::IrregularQuad}};
+                               {"Gregory quad", PatchClass::Other}};
     for (int n : valences)
         out.push_back({name + " of valence " + std::to_string(n),
                        PatchClass::IrregularQuad,
@@ -138,8 +138,8 @@ void IsolatedNets::say_gregory(Gregory const& faces, std::string const& where,
                                std::string const& why)
 {
     if (faces.count == 0) return;
-    draws_another_way({faces.first, (faces.count == 1 ? "1 face " + where + " is a Gregory patch"
-                                                      : std::to_string(faces.count) + " faces " +
+    draws_another_way({faces.first, (faces.count == 1 ? "1 patch " + where + " is a Gregory patch"
+                                                      : std::to_string(faces.count) + " patches " +
                                                             where + " are Gregory patches") +
                                         ", not " + net_.promise + ": " + why});
 }

@@ -29,7 +29,7 @@ struct Valence {
     std::vector<float> splines, powers;          // see StamTables
     std::vector<std::uint32_t> nets;             // [patch][point], where a dispatch projects them
     std::vector<std::uint32_t> faces, rotations; // by patch
-    std::vector<std::uint32_t> words;            // StamPatchWords
+    std::vector<std::uint32_t> owners;           // see StamSharedInside
 
     explicit Valence(int n) : valence(n), functions(2 * n + 8)
     {
@@ -94,15 +94,13 @@ private:
         for (int i : net_of(*net)) v.nets.push_back(net->inputs[std::size_t(i)]);
         v.faces.push_back(face);
         v.rotations.push_back(std::uint32_t(n.rotation));
-        std::uint32_t const collapsed = collapsed_edges(n);
-        v.words.insert(v.words.end(),
-                       {StamPatchWords::kNone, (collapsed & 1) | (collapsed >> 3 & 1) << 1});
+        v.owners.push_back(StamSharedInside::kNoOwner);
     }
     /// Where edge 3 of a patch is edge 0 of another one that is drawn.
     void find_owners()
     {
         Topology const& topology = mesh().topology();
-        std::vector<std::uint32_t> patch_of(topology.mesh().faces(), StamPatchWords::kNone);
+        std::vector<std::uint32_t> patch_of(topology.mesh().faces(), StamSharedInside::kNoOwner);
         for (Valence const& v : valences_)
             for (std::size_t p = 0; p < v.faces.size(); ++p)
                 patch_of[v.faces[p]] = std::uint32_t(p);
@@ -110,8 +108,7 @@ private:
             for (std::size_t p = 0; p < v.faces.size(); ++p) {
                 HalfEdge const edge3 =
                     topology.mesh().face_start[v.faces[p]] + (v.rotations[p] + 3) % 4;
-                v.words[StamPatchWords::kCount * p + StamPatchWords::kOwner] =
-                    patch_of[topology.face_of(topology.twin(edge3))];
+                v.owners[p] = patch_of[topology.face_of(topology.twin(edge3))];
             }
     }
     void say_wide()
@@ -183,7 +180,8 @@ private:
             groups_for(cs.threads(v.faces.size(), v.functions), cs.kThreads[0])});
         StamBufferInside const inside{v.tables(), {*projected, 2, "projected_nets"}};
         if (!has_shared_edges()) return bind_surface(StamBufferDomainShader{inside}, s);
-        return bind_surface(StamSharedDomainShader{inside, {v.words, 3, "patch_words"}}, s);
+        return bind_surface(
+            StamSharedDomainShader{s.true_normals, {{}, inside, {v.owners, 3, "spoke_owners"}}}, s);
     }
 
     std::vector<Valence> valences_; // by kind
