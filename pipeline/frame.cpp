@@ -172,8 +172,6 @@ SurfaceSettings seen_surface(FrameSettings const& s)
 CommandList frame_commands(PatchMesh const& mesh, FrameSettings const& s,
                            SurfaceSettings const& surface)
 {
-    if (surface.curvature && surface.displacement)
-        throw Error("curvature is that of the smooth surface: it is not shown of a displaced one");
     CommandList list = mesh.commands(surface);
     return s.direct3d10 ? instanced(std::move(list), surface) : list;
 }

@@ -4,8 +4,6 @@
 #include "pipeline/commands/displacement.h"
 #include "pipeline/commands/subdivision.h"
 
-#include <cassert>
-
 namespace tessemu {
 
 AnotherWay another_way_of(std::size_t patches, std::uint32_t first_face, std::string const& what)
@@ -94,8 +92,9 @@ void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const&
     desc.vertex_shader = d.vertex_shader;
     desc.hull_shader = d.hull_shader;
     desc.domain_shader = d.domain_shader;
+    if (settings.curvature && settings.displacement)
+        throw Error("curvature is that of the smooth surface: it is not shown of a displaced one");
     if (d.domain_shader->output().holds<CurvedPoint<float>>()) {
-        assert(!settings.displacement);
         desc.domain_epilog =
             bind_domain_epilog(CurvedProjectionEpilog{settings.view_projection}, settings.machine);
     } else {

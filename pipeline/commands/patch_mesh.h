@@ -124,7 +124,8 @@ template <class Surface> DomainShader surface_shader(SurfaceSettings const& sett
     return bind_surface(Surface{settings.true_normals}, settings);
 }
 
-/// Appends the draw with the settings' epilog: projection, or displacement and projection.
+/// Appends the draw with the settings' epilog: projection, or displacement and projection. Throws
+/// Error for settings that ask for the curvature of a displaced surface.
 void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const& draw,
                     SurfaceSettings const& settings);
 

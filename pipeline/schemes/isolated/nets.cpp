@@ -115,11 +115,17 @@ std::vector<std::pair<std::string, std::string>> IsolatedNets::watertight_with()
 
 IsolatedNets::IsolatedNets(std::shared_ptr<RefinedMesh const> refined, Net net,
                            Parameters const& parameters)
-    : StencilForm(refined, kinds_of(net.name, valences_of(refined->topology(), net.max_valence))),
+    : IsolatedNets(refined, net, parameters, valences_of(refined->topology(), net.max_valence))
+{
+}
+
+IsolatedNets::IsolatedNets(std::shared_ptr<RefinedMesh const> refined, Net net,
+                           Parameters const& parameters, std::vector<int> valences)
+    : StencilForm(std::move(refined), kinds_of(net.name, valences)),
       net_(std::move(net)),
       shared_edges_(parameters.word("edges") == "shared"),
       bspline_(parameters.word("regular") == "bspline"),
-      valences_(valences_of(refined->topology(), net_.max_valence))
+      valences_(std::move(valences))
 {
     gregory_.smooth_corners = mesh().base().smooth_corners();
 }

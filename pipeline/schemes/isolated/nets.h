@@ -68,6 +68,9 @@ protected:
                                std::vector<StencilRow> const& points) const;
 
 private:
+    IsolatedNets(std::shared_ptr<RefinedMesh const> mesh, Net net, Parameters const& parameters,
+                 std::vector<int> valences);
+
     enum Kind : std::size_t { kRegularQuad, kGregoryQuad };
 
     /// Faces that take gregory-stencil's patches.
