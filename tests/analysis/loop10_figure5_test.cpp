@@ -388,6 +388,10 @@ TEST(Loop10Figure5, APanelForEachModelAndGpuAndAllClaims)
             EXPECT_EQ(c.other_readings.size(), 3u) << "counted work, 600 million, no limit";
             EXPECT_NE(c.ours.find("; Stam "), std::string::npos) << c.ours;
         }
+        if (c.letter == "j") {
+            EXPECT_NE(c.ours.find("at 1 and 2: 12 of 12: "), std::string::npos)
+                << c.ours << ": a step leaves no regular quad of a cube";
+        }
         if (c.letter == "a" || c.letter == "f") {
             EXPECT_TRUE(std::any_of(c.other_readings.begin(), c.other_readings.end(),
                                     [](std::string const& other) {

@@ -350,15 +350,14 @@ private:
             steps += fmt::format("{}{} {:.3f} and {:.3f}", m ? ", " : "", kLoop10Models[m].paper,
                                  1e3 * radeon.seconds, 1e3 * gtx.seconds);
         }
-        return {
-            "i",
-            "the Radeon is slightly faster than the GTX 480 in the subdivision step",
-            largest < kLastDigit ? Verdict::CannotFollow : decided(cases.all()),
-            "less time on every model; not decided where all differences are below 0.01 ms, "
-            "table 1's last digit: the rest is the overhead fitted to that table, one for both",
-            fmt::format("ms of Radeon and GTX 480: {}; faster on {} models, by {} ms", steps,
-                        cases.count(), cases.range("{:.3f}")),
-            "overheads; of the counted work, " + on_each(radeon_bounds, gtx_bounds)};
+        return {"i",
+                "the Radeon is slightly faster than the GTX 480 in the subdivision step",
+                largest < kLastDigit ? Verdict::CannotFollow : decided(cases.all()),
+                "less time on every model; not decided where all differences are below 0.01 ms, "
+                "table 1's last digit: the rest is the overhead fitted to that table, one for both",
+                fmt::format("ms of Radeon and GTX 480: {}; faster on {} models, by {} ms", steps,
+                            cases.count(), cases.range("{:.3f}")),
+                "overheads; of the counted work, " + on_each(radeon_bounds, gtx_bounds)};
     }
 
     // By the factor of a patch, whatever mesh it is of: the paper's words are about its shaders.

@@ -12,6 +12,8 @@
 #include "analysis/papers/loop10/claims.h"
 #include "analysis/papers/loop10/table1.h"
 
+#include <map>
+
 namespace tessemu {
 
 /// A curve: a scheme, by its name in the registry.
