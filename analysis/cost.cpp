@@ -9,6 +9,7 @@ namespace tessemu {
 namespace {
 
 constexpr double kFetchBytes = 16;
+constexpr char const* kHullShader = "hull_shader";
 
 bool is_cached(ResourceKind kind)
 {
@@ -44,31 +45,38 @@ double idle_lanes(GpuModel const& m, PipelineStatistics const& p)
     return run / useful;
 }
 
+double special_operations(FlopCount const& f)
+{
+    return double(f.div + f.sqrt + f.rsqrt);
+}
+
+double operations(FlopCount const& f)
+{
+    return double(f.add + f.mul + f.mad) + special_operations(f);
+}
+
+double arithmetic_seconds(GpuModel const& m, FlopCount const& f)
+{
+    double const special = special_operations(f);
+    return (operations(f) - special) / m.arithmetic + special / m.special;
+}
+
+double hull_shader_seconds(GpuModel const& m, DrawStatistics const& s)
+{
+    for (StageStatistics const& stage : s.stages)
+        if (stage.stage == kHullShader)
+            return idle_lanes(m, s.pipeline) * arithmetic_seconds(m, stage.flops);
+    return 0;
+}
+
 // Without rasterization nobody counts them, and none has to be made.
 double tessellated_triangles(PipelineStatistics const& p)
 {
     return double(p.GSInvocations ? p.GSInvocations : p.CInvocations);
 }
 
-} // namespace
-
-double fetch_count(FetchStatistics const& f)
-{
-    if (f.count == 0) return 0;
-    double const each = double(f.bytes) / double(f.count);
-    bool const scalar = each <= 4 && is_cached(f.kind);
-    return double(f.count) * (scalar ? each / kFetchBytes : std::ceil(each / kFetchBytes));
-}
-
-std::string StageCost::bound() const
-{
-    if (seconds() == 0) return "-";
-    if (fixed > 0) return "rate";
-    if (memory > arithmetic + fetch) return "memory";
-    return arithmetic > fetch ? "arithmetic" : "fetch";
-}
-
-DrawCost estimate_cost(GpuModel const& m, DrawStatistics const& s)
+// \param hull_shader  seconds of its arithmetic
+DrawCost cost(GpuModel const& m, DrawStatistics const& s, double hull_shader)
 {
     DrawCost out;
     PipelineStatistics const& p = s.pipeline;
@@ -78,11 +86,9 @@ DrawCost estimate_cost(GpuModel const& m, DrawStatistics const& s)
         StageCost c;
         c.stage = stage.stage;
         bool const is_shader = stage.stage.ends_with("_shader");
-        FlopCount const& f = stage.flops;
-        double const special = double(f.div + f.sqrt + f.rsqrt);
-        c.operations = double(f.add + f.mul + f.mad) + special;
-        double const idle = stage.stage == "hull_shader" ? idle_lanes(m, p) : 1;
-        c.arithmetic = idle * ((c.operations - special) / m.arithmetic + special / m.special);
+        c.operations = operations(stage.flops);
+        c.arithmetic =
+            stage.stage == kHullShader ? hull_shader : arithmetic_seconds(m, stage.flops);
         for (FetchStatistics const& r : stage.fetches) {
             double const n = fetch_count(r);
             c.fetches += n;
@@ -116,6 +122,40 @@ DrawCost estimate_cost(GpuModel const& m, DrawStatistics const& s)
                                         : "memory";
     out.seconds = m.overhead + work;
     return out;
+}
+
+} // namespace
+
+double fetch_count(FetchStatistics const& f)
+{
+    if (f.count == 0) return 0;
+    double const each = double(f.bytes) / double(f.count);
+    bool const scalar = each <= 4 && is_cached(f.kind);
+    return double(f.count) * (scalar ? each / kFetchBytes : std::ceil(each / kFetchBytes));
+}
+
+std::string StageCost::bound() const
+{
+    if (seconds() == 0) return "-";
+    if (fixed > 0) return "rate";
+    if (memory > arithmetic + fetch) return "memory";
+    return arithmetic > fetch ? "arithmetic" : "fetch";
+}
+
+DrawCost estimate_cost(GpuModel const& m, DrawStatistics const& s)
+{
+    return cost(m, s, hull_shader_seconds(m, s));
+}
+
+DrawCost estimate_cost(GpuModel const& m, std::span<CommandStatistics const> commands)
+{
+    DrawStatistics all;
+    double hull_shader = 0;
+    for (CommandStatistics const& c : commands) {
+        all += c.statistics;
+        hull_shader += hull_shader_seconds(m, c.statistics);
+    }
+    return cost(m, all, hull_shader);
 }
 
 } // namespace tessemu

@@ -10,11 +10,16 @@
 // texture). Of buffers and textures memory sees every element once, and again the part of the
 // repeated reads that the cache has no room for.
 //
+// A hull shader's groups do not span patches, so lanes idle. How many, each draw of a frame says for
+// itself, for draws differ in control points; all else of a frame is costed as one draw.
+//
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "emu/statistics.h"
 #include "io/gpu_model.h"
+#include "pipeline/commands/command_list.h"
+
+#include <span>
 
 namespace tessemu {
 
@@ -37,8 +42,10 @@ struct DrawCost {
     std::string bound;  ///< the stage that the draw waits for
 };
 
-/// \param statistics  of a draw, or of several added up
+/// \param statistics  of a draw, or of several with the same patches added up
 DrawCost estimate_cost(GpuModel const& gpu, DrawStatistics const& statistics);
+/// Of a frame's commands, with the overhead once.
+DrawCost estimate_cost(GpuModel const& gpu, std::span<CommandStatistics const> commands);
 
 /// Fetches of up to 16 bytes.
 double fetch_count(FetchStatistics const& f);

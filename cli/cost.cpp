@@ -48,11 +48,11 @@ int run(CostRequest o)
     }
     ThreadPool const threads(o.run.threads);
     Stopwatch const clock;
-    DrawStatistics const statistics = o.geometry_only
-                                          ? visit_surface(job.patches(), f, threads, {}).total
-                                          : draw_frame(job.patches(), f, threads).statistics;
+    std::vector<CommandStatistics> const commands =
+        o.geometry_only ? visit_surface(job.patches(), f, threads, {}).commands
+                        : draw_frame(job.patches(), f, threads).commands;
     add_run(job.header, job, threads, clock.seconds());
-    DrawCost const cost = estimate_cost(gpu, statistics);
+    DrawCost const cost = estimate_cost(gpu, commands);
     CostSummary summary{gpu.name, cost.bound, gpu.overhead, cost.shaders, cost.seconds, {}, {}};
     double fetches = gpu.any_fetch; // of the fastest kind
     for (auto const& [kind, rate] : gpu.fetch) fetches = std::max(fetches, rate);

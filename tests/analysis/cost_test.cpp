@@ -121,6 +121,53 @@ TEST(Cost, LanesBeyondAPatchsControlPointsIdle)
     EXPECT_DOUBLE_EQ(estimate_cost(m, s).seconds, 128);
 }
 
+// Patches of 16 control points leave half of 32 lanes idle, patches of 32 none; the mean of 24 would
+// say a quarter for both.
+TEST(Cost, EachDrawOfAFrameHasItsOwnIdleLanes)
+{
+    GpuModel m;
+    m.arithmetic = 1;
+    m.group_width = 32;
+    m.overhead = 1000;
+    std::vector<CommandStatistics> frame(2, {"draw", "patches", 1, {}});
+    for (auto& c : frame) {
+        c.statistics.pipeline.HSInvocations = 1;
+        c.statistics.stages = {stage("hull_shader", 100, 0, {}), stage("domain_shader", 8, 0, {})};
+    }
+    frame[0].statistics.pipeline.HSControlPointInvocations = 16;
+    frame[1].statistics.pipeline.HSControlPointInvocations = 32;
+    DrawCost const c = estimate_cost(m, frame);
+    ASSERT_EQ(c.stages.size(), 2u);
+    EXPECT_EQ(c.stages[0].arithmetic, 200 + 100);
+    EXPECT_EQ(c.stages[0].operations, 200);
+    EXPECT_EQ(c.stages[1].arithmetic, 16);
+    EXPECT_EQ(c.shaders, 316);
+    EXPECT_EQ(c.seconds, 1316) << "one overhead";
+    EXPECT_EQ(c.bound, "hull_shader");
+}
+
+// Claims ask which frame is shorter: the same triangles take the same time to the last bit.
+TEST(Cost, HowAFramesPatchesAreSpreadOverDrawsDoesNotShow)
+{
+    GpuModel m;
+    m.tessellated_triangles = 0.3;
+    m.bandwidth = 0.7;
+    auto const frame = [](std::vector<std::uint64_t> const& draws) {
+        std::vector<CommandStatistics> out;
+        for (std::uint64_t n : draws) {
+            out.push_back({"draw", "patches", 1, {}});
+            out.back().statistics.pipeline.CInvocations = n;
+            out.back().statistics.stages = {
+                stage("tessellator", 0, 0, {}),
+                stage("domain_shader", 0, 0, {{"b", ResourceKind::Buffer, n, n, n}})};
+        }
+        return out;
+    };
+    DrawCost const one = estimate_cost(m, frame({27})), three = estimate_cost(m, frame({1, 1, 25}));
+    EXPECT_EQ(one.seconds, three.seconds);
+    EXPECT_EQ(one.stages[1].memory, three.stages[1].memory);
+}
+
 // The built-in description's two fitted numbers are what a fit gives today, to the digits that the
 // file has.
 void expect_stored(char const* name, GpuModel const& fitted)

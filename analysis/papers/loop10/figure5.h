@@ -8,8 +8,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "analysis/divergence.h"
 #include "analysis/papers/loop10/claims.h"
 #include "analysis/papers/loop10/table1.h"
+
+#include <map>
 
 namespace tessemu {
 
@@ -28,10 +31,15 @@ inline constexpr std::array<Figure5Scheme, kFigure5Curves> kFigure5Schemes{
      {"Stam", "stam", true, true},
      {"Biseptic", "biseptic", true, true}}};
 
+/// Turns of the loops of a mesh's kernels of subdivision, by the names of their dispatches.
+using KernelTurns = std::map<std::string, LoopTurns>;
+
 /// What frames counted, by the factor of a patch.
 struct Figure5Counts {
-    std::array<std::array<ByFactor<std::vector<CommandStatistics>>, kFigure5Curves>, kFigure5Models>
-        frames;
+    using Frames = ByFactor<std::vector<CommandStatistics>>;
+    std::array<std::array<Frames, kFigure5Curves>, kFigure5Models> frames;
+    std::array<Frames, kFigure5Models> sorted;        ///< Gregory2's, sorted by valence
+    ByGpuModel<KernelTurns> turns, turns_when_sorted; ///< Gregory2's
 };
 
 /// What a frame's factors count segments of.
