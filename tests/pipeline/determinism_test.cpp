@@ -194,7 +194,12 @@ TEST(Determinism, TheCheckingMachineHasTheFastOnesBitsAndCountsInEveryStageOfEve
             m.patches->commands(with_curvature).for_each_surface_draw([&](Draw const& d) {
                 curved = curved || d.has_curvature();
             });
-            for (Variant const& v : frame_variants())
+            std::vector<Variant> variants = frame_variants();
+            if (!set.empty()) // pixels do not know how edges were made
+                std::erase_if(variants, [](Variant const& v) {
+                    return v.name != "lit" && v.name != "curvature" && v.name != "direct3d10";
+                });
+            for (Variant const& v : variants)
                 for (auto const& map : maps)
                     for (bool moved : {false, true}) {
                         if (!map && &map != maps) continue;
