@@ -7,8 +7,6 @@
 #include "emu/hull_shader.h"
 #include "shaders_cpp/records.h"
 
-#include <type_traits>
-
 namespace tessemu {
 
 template <int K, class T> struct PackedPoints {

@@ -26,7 +26,6 @@ SchemeOnMesh biseptic(ControlMesh mesh, ParameterTexts set = {})
 {
     return build_scheme(find_scheme("biseptic"), std::move(mesh), {.set = std::move(set)});
 }
-ParameterTexts const kShared{{"edges", "shared"}};
 
 void expect_closed(SchemeOnMesh const& on, WatertightSettings const& s, std::string const& what)
 {
@@ -57,7 +56,7 @@ TEST(Biseptic, WithSharedEdgesIsClosedUnderAnyContraction)
     for (int n : {3, 5, 8, 12})
         meshes.emplace_back("trapezohedron " + std::to_string(n), test::trapezohedron(n).mesh);
     for (auto const& [name, mesh] : meshes) {
-        SchemeOnMesh const on = biseptic(mesh, kShared);
+        SchemeOnMesh const on = biseptic(mesh, test::kSharedEdges);
         for (int seed = -2; seed < 20; ++seed) {
             WatertightSettings s;
             s.frame.tess_factor = (seed + 3) % 3 ? 6.6f : 5;
@@ -73,7 +72,8 @@ TEST_P(ClosedCages, AreClosedWithSharedEdges)
 {
     std::string const model = std::string("models/") + GetParam() + ".obj";
     TESSEMU_NEEDS_SHARED(model);
-    SchemeOnMesh const on = biseptic(load_model(test::shared(model).string()).mesh, kShared);
+    SchemeOnMesh const on =
+        biseptic(load_model(test::shared(model).string()).mesh, test::kSharedEdges);
     bool const small = on.mesh->mesh().faces() < 2000;
     for (int seed = -2; seed < (small ? 20 : 2); ++seed) {
         WatertightSettings s;
@@ -121,7 +121,7 @@ TEST(Biseptic, AWarningCountsTheFacesBeyondItsValences)
             if (w.find("more than 12 edges") != std::string::npos) return w;
         return std::string();
     };
-    for (ParameterTexts const& set : {ParameterTexts{}, kShared}) {
+    for (ParameterTexts const& set : {ParameterTexts{}, test::kSharedEdges}) {
         EXPECT_EQ(beyond(biseptic(test::trapezohedron(12).mesh, set)), "");
         SchemeOnMesh const on = biseptic(test::trapezohedron(13).mesh, set);
         EXPECT_EQ(beyond(on), "26 patches at a vertex of more than 12 edges are Gregory patches, "
@@ -142,7 +142,7 @@ TEST(Biseptic, AWarningCountsTheFacesBeyondItsValences)
 TEST(Biseptic, RegularPatchesAreStams)
 {
     ControlMesh const mesh = load_model("golem").mesh;
-    for (ParameterTexts const& set : {ParameterTexts{}, kShared}) {
+    for (ParameterTexts const& set : {ParameterTexts{}, test::kSharedEdges}) {
         std::map<std::tuple<std::uint32_t, int, int>, std::vector<float>> points[2];
         char const* const schemes[] = {"stam", "biseptic"};
         for (int i = 0; i < 2; ++i) {
@@ -183,7 +183,7 @@ TEST(Biseptic, SharedEdgesAreTheSurfacesOwn)
             for (std::size_t i = 0; i < p.points(); ++i) work(known, i, p.vertex(i));
         });
     };
-    SchemeOnMesh const as_is = biseptic(mesh), shared = biseptic(mesh, kShared),
+    SchemeOnMesh const as_is = biseptic(mesh), shared = biseptic(mesh, test::kSharedEdges),
                        stam = build_scheme(find_scheme("stam"), mesh);
     ControlMesh const refined = drawn_mesh(*as_is.mesh, {}, ThreadPool(1)).mesh;
     for (std::size_t f = 0; f < refined.faces(); ++f)

@@ -19,17 +19,8 @@
 namespace tessemu {
 namespace {
 
-using test::boundary_faces, test::checked, test::patches_of, test::with_valence_two;
-
-ParameterTexts const kShared{{"edges", "shared"}};
-std::vector<ParameterTexts> all_choices()
-{
-    std::vector<ParameterTexts> out;
-    for (char const* edges : {"paper", "shared"})
-        for (char const* regular : {"bezier", "bspline"})
-            out.push_back({{"edges", edges}, {"regular", regular}});
-    return out;
-}
+using test::all_choices, test::boundary_faces, test::checked, test::patches_of,
+    test::with_valence_two;
 
 class IsolatedNets : public testing::TestWithParam<char const*> {
 protected:
@@ -193,7 +184,7 @@ TEST_P(IsolatedNets, WithSharedEdgesAllHolds)
     meshes.emplace_back("valence 2", with_valence_two());
     for (auto const& [name, mesh] : meshes)
         for (char const* regular : {"bezier", "bspline"}) {
-            ParameterTexts choices = kShared;
+            ParameterTexts choices = test::kSharedEdges;
             choices.emplace_back("regular", regular);
             SchemeOnMesh const on = build(mesh, choices);
             auto const pose = std::make_shared<Pose>(SpineRig(on.mesh->base()).sway(0.3));

@@ -28,21 +28,12 @@
 namespace tessemu {
 namespace {
 
-using test::checked, test::patches_of;
+using test::all_choices, test::checked, test::patches_of;
 
 SchemeOnMesh stam(ControlMesh mesh, ParameterTexts set = {}, int subdivide = 0)
 {
     return build_scheme(find_scheme("stam"), std::move(mesh),
                         {.subdivide = subdivide, .set = std::move(set)});
-}
-ParameterTexts const kShared{{"edges", "shared"}};
-std::vector<ParameterTexts> all_choices()
-{
-    std::vector<ParameterTexts> out;
-    for (char const* edges : {"paper", "shared"})
-        for (char const* regular : {"bezier", "bspline"})
-            out.push_back({{"edges", edges}, {"regular", regular}});
-    return out;
 }
 
 // The surface at any point of the file's mesh, by the programs of its draws: stages are run one by
@@ -281,7 +272,7 @@ TEST(Stam, SpokesBesideAHoleAreTheirOwn)
 {
     ControlMesh mesh = test::trapezohedron(5).mesh;
     mesh.holes = {2};
-    SchemeOnMesh const paper = stam(mesh), shared = stam(mesh, kShared);
+    SchemeOnMesh const paper = stam(mesh), shared = stam(mesh, test::kSharedEdges);
     for (SchemeOnMesh const* on : {&paper, &shared}) {
         EqualParameterErrors const e = equal_parameter_errors(*on->patches, {}, 3, ThreadPool(1));
         EXPECT_LE(e.position_statistics().max, 2e-6);

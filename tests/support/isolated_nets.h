@@ -4,14 +4,26 @@
 #pragma once
 
 #include "analysis/watertight.h"
-#include "pipeline/commands/patch_mesh.h"
+#include "pipeline/schemes/scheme.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace tessemu::test {
+
+inline ParameterTexts const kSharedEdges{{"edges", "shared"}};
+/// Every way in which edges and regular patches are drawn.
+inline std::vector<ParameterTexts> all_choices()
+{
+    std::vector<ParameterTexts> out;
+    for (char const* edges : {"paper", "shared"})
+        for (char const* regular : {"bezier", "bspline"})
+            out.push_back({{"edges", edges}, {"regular", regular}});
+    return out;
+}
 
 // A closed strip of four quads around an axis, with vertices of two edges at its ends.
 inline ControlMesh with_valence_two()

@@ -18,12 +18,17 @@ using BisepticRowsHullShader =
 #define TESSEMU_BISEPTIC_PROGRAMS(instantiate, T)                                                  \
     instantiate class DomainProgramOn<BisepticDomainShader, T>;                                    \
     instantiate class DomainProgramOn<BisepticRowsDomainShader, T>;                                \
-    instantiate class DomainProgramOn<CurvedSurface<BisepticDomainShader>, T>;                     \
-    instantiate class DomainProgramOn<CurvedSurface<BisepticRowsDomainShader>, T>;                 \
     instantiate class HullProgramOn<BisepticHullShader, T>;                                        \
     instantiate class HullProgramOn<BisepticRowsHullShader, T>;
 
+/// Those with second derivatives, for the curvature view: a compilation of their own.
+#define TESSEMU_BISEPTIC_CURVED_PROGRAMS(instantiate, T)                                           \
+    instantiate class DomainProgramOn<CurvedSurface<BisepticDomainShader>, T>;                     \
+    instantiate class DomainProgramOn<CurvedSurface<BisepticRowsDomainShader>, T>;
+
 TESSEMU_BISEPTIC_PROGRAMS(extern template, FastScalar)
 TESSEMU_BISEPTIC_PROGRAMS(extern template, CheckScalar)
+TESSEMU_BISEPTIC_CURVED_PROGRAMS(extern template, FastScalar)
+TESSEMU_BISEPTIC_CURVED_PROGRAMS(extern template, CheckScalar)
 
 } // namespace tessemu

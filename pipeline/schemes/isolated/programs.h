@@ -19,15 +19,20 @@ namespace tessemu {
     instantiate class DomainProgramOn<BsplineRowsDomainShader, T>;                                 \
     instantiate class DomainProgramOn<BsplineQuadDomainShader, T>;                                 \
     instantiate class DomainProgramOn<BezierQuadDomainShader, T>;                                  \
-    instantiate class DomainProgramOn<CurvedSurface<BsplineRowsDomainShader>, T>;                  \
-    instantiate class DomainProgramOn<CurvedSurface<BsplineQuadDomainShader>, T>;                  \
-    instantiate class DomainProgramOn<CurvedSurface<BezierQuadDomainShader>, T>;                   \
     instantiate class HullProgramOn<CagedStencilHullShader<SummedRows<4>>, T>;                     \
     instantiate class HullProgramOn<CagedStencilHullShader<GatheredRows<4>>, T>;                   \
     instantiate class HullProgramOn<BsplineQuadHullShader, T>;                                     \
     instantiate class HullProgramOn<BezierHullShader, T>;
 
+/// Those with second derivatives, for the curvature view: a compilation of their own.
+#define TESSEMU_ISOLATED_CURVED_PROGRAMS(instantiate, T)                                           \
+    instantiate class DomainProgramOn<CurvedSurface<BsplineRowsDomainShader>, T>;                  \
+    instantiate class DomainProgramOn<CurvedSurface<BsplineQuadDomainShader>, T>;                  \
+    instantiate class DomainProgramOn<CurvedSurface<BezierQuadDomainShader>, T>;
+
 TESSEMU_ISOLATED_PROGRAMS(extern template, FastScalar)
 TESSEMU_ISOLATED_PROGRAMS(extern template, CheckScalar)
+TESSEMU_ISOLATED_CURVED_PROGRAMS(extern template, FastScalar)
+TESSEMU_ISOLATED_CURVED_PROGRAMS(extern template, CheckScalar)
 
 } // namespace tessemu

@@ -15,14 +15,19 @@ namespace tessemu {
     instantiate class DomainProgramOn<StamPointsDomainShader, T>;                                  \
     instantiate class DomainProgramOn<StamBufferDomainShader, T>;                                  \
     instantiate class DomainProgramOn<StamSharedDomainShader, T>;                                  \
-    instantiate class DomainProgramOn<CurvedSurface<StamPointsDomainShader>, T>;                   \
-    instantiate class DomainProgramOn<CurvedSurface<StamBufferDomainShader>, T>;                   \
-    instantiate class DomainProgramOn<CurvedSurface<StamSharedDomainShader>, T>;                   \
     instantiate class HullProgramOn<DenseNetHullShader<SummedRows<4>>, T>;                         \
     instantiate class HullProgramOn<NetHullShader<CornersAlone>, T>;                               \
     instantiate class ComputeProgramOn<StamProjectionShader, T>;
 
+/// Those with second derivatives, for the curvature view: a compilation of their own.
+#define TESSEMU_STAM_CURVED_PROGRAMS(instantiate, T)                                               \
+    instantiate class DomainProgramOn<CurvedSurface<StamPointsDomainShader>, T>;                   \
+    instantiate class DomainProgramOn<CurvedSurface<StamBufferDomainShader>, T>;                   \
+    instantiate class DomainProgramOn<CurvedSurface<StamSharedDomainShader>, T>;
+
 TESSEMU_STAM_PROGRAMS(extern template, FastScalar)
 TESSEMU_STAM_PROGRAMS(extern template, CheckScalar)
+TESSEMU_STAM_CURVED_PROGRAMS(extern template, FastScalar)
+TESSEMU_STAM_CURVED_PROGRAMS(extern template, CheckScalar)
 
 } // namespace tessemu
