@@ -81,10 +81,11 @@ void write_tags(ControlMesh const& mesh, Pieces& out)
         out.end();
     }
     ControlMesh const plain;
-    if (mesh.boundary != plain.boundary)
-        out.text("t interpolateboundary 1/0/0 {}\n", int(mesh.boundary));
-    if (mesh.crease_method == CreaseMethod::Chaikin) out.text("t creasemethod 0/0/1 chaikin\n");
-    if (mesh.smooth_triangles) out.text("t smoothtriangles 0/0/1 smooth\n");
+    if (mesh.rules.boundary != plain.rules.boundary)
+        out.text("t interpolateboundary 1/0/0 {}\n", int(mesh.rules.boundary));
+    if (mesh.rules.crease_method == CreaseMethod::Chaikin)
+        out.text("t creasemethod 0/0/1 chaikin\n");
+    if (mesh.rules.smooth_triangles) out.text("t smoothtriangles 0/0/1 smooth\n");
 }
 
 void write_obj(ControlMesh const& mesh, Placement const& placement, Pieces& out)
@@ -160,9 +161,9 @@ std::string left_out_of_ply(ControlMesh const& mesh)
     count(mesh.corners.size(), "corner", "corners");
     count(mesh.holes.size(), "hole", "holes");
     count(mesh.coordinates.size(), "pair of texture coordinates", "texture coordinates");
-    if (mesh.boundary != plain.boundary) lost.emplace_back("interpolateboundary");
-    if (mesh.crease_method != plain.crease_method) lost.emplace_back("creasemethod");
-    if (mesh.smooth_triangles) lost.emplace_back("smoothtriangles");
+    if (mesh.rules.boundary != plain.rules.boundary) lost.emplace_back("interpolateboundary");
+    if (mesh.rules.crease_method != plain.rules.crease_method) lost.emplace_back("creasemethod");
+    if (mesh.rules.smooth_triangles) lost.emplace_back("smoothtriangles");
     std::string out;
     for (std::size_t i = 0; i < lost.size(); ++i)
         out += (i == 0 ? "" : i + 1 == lost.size() ? " and " : ", ") + lost[i];

@@ -149,13 +149,13 @@ void ObjTags::apply(Tag const& t, std::size_t vertices)
                                         "(edge and corner) and 2 (edge only): skipped",
                                         t.ints[0]),
                             "interpolateboundary");
-        mesh_.boundary = BoundaryRule(t.ints[0]);
+        mesh_.rules.boundary = BoundaryRule(t.ints[0]);
     } else if (t.name == "creasemethod") {
         if (auto const is_second = one_of(t, "normal", "chaikin"))
-            mesh_.crease_method = *is_second ? CreaseMethod::Chaikin : CreaseMethod::Normal;
+            mesh_.rules.crease_method = *is_second ? CreaseMethod::Chaikin : CreaseMethod::Normal;
     } else if (t.name == "smoothtriangles") {
         if (auto const is_second = one_of(t, "catmark", "smooth"))
-            mesh_.smooth_triangles = *is_second;
+            mesh_.rules.smooth_triangles = *is_second;
     } else if (t.name == "facevaryinginterpolateboundary") {
         if (t.ints != std::vector<std::int64_t>{kLinear})
             left_out(fmt::format("tag '{}' is not honoured: texture coordinates are linear in "

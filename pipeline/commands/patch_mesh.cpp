@@ -142,7 +142,7 @@ std::vector<char> hidden_faces(RefinedMesh const& refined, std::vector<std::stri
     ControlMesh const& base = refined.base();
     std::vector<char> hidden(base.faces(), 0);
     for (std::uint32_t f : base.holes) hidden[f] = 1;
-    if (base.boundary == BoundaryRule::None) {
+    if (base.rules.boundary == BoundaryRule::None) {
         std::vector<std::uint32_t> const soft = soft_boundary(refined.base_topology());
         std::size_t dropped = 0;
         for (std::uint32_t f = 0; f < base.faces(); ++f)
@@ -168,7 +168,7 @@ DrawnMesh drawn_mesh(RefinedMesh const& refined, SurfaceSettings const& settings
         float const* const p = points.floats.data() + v * std::size_t(points.stride);
         out.mesh.positions[v] = {p[0], p[1], p[2]};
     }
-    if (refined.steps() == 0 || out.mesh.boundary != BoundaryRule::None) return out;
+    if (refined.steps() == 0 || out.mesh.rules.boundary != BoundaryRule::None) return out;
     std::vector<std::string> warnings;
     std::vector<char> const hidden = hidden_faces(refined, warnings);
     out.mesh.holes.clear();

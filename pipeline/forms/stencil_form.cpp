@@ -281,7 +281,7 @@ void StencilForm::add_wide_patch(Type const& t, Neighbourhood const& n, std::uin
     for (int r = 0; r < s.control_points + 4 * n.sides; ++r) add_row(s.rows[std::size_t(r)]);
     for (int i = 0; i < n.sides; ++i) {
         VertexStencils const corner(n.corner[i], s.inputs,
-                                    mesh().base().boundary == BoundaryRule::EdgeOnly);
+                                    mesh().base().rules.boundary == BoundaryRule::EdgeOnly);
         auto const [a, b] = corner.tangents(n.ring_shift[i]);
         add_row(a);
         add_row(b);

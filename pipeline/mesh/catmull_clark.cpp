@@ -45,9 +45,7 @@ ControlMesh catmull_clark_mesh(Topology const& topology, Sharpness const& sharpn
     ControlMesh const& mesh = topology.mesh();
     ControlMesh out;
     out.name = mesh.name;
-    out.boundary = mesh.boundary;
-    out.crease_method = mesh.crease_method;
-    out.smooth_triangles = mesh.smooth_triangles;
+    out.rules = mesh.rules;
     out.positions.assign(points.begin(), points.end());
     EdgeNumbers const edges(topology);
     auto const edge_point = [&, F = std::uint32_t(mesh.faces())](HalfEdge h) {
@@ -60,6 +58,7 @@ ControlMesh catmull_clark_mesh(Topology const& topology, Sharpness const& sharpn
                                        topology.face_of(h), edge_point(topology.previous(h))};
         out.add_face(quad);
     }
+    for (HalfEdge h : mesh.concave) out.concave.push_back(4 * h);
     for (std::uint32_t f : mesh.holes)
         for (HalfEdge h = mesh.face_start[f]; h < mesh.face_start[f + 1]; ++h)
             out.holes.push_back(h);

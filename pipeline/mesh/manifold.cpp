@@ -147,9 +147,7 @@ ManifoldMesh make_manifold(ControlMesh mesh)
 
     ControlMesh& m = out.mesh;
     m.name = mesh.name;
-    m.boundary = mesh.boundary;
-    m.crease_method = mesh.crease_method;
-    m.smooth_triangles = mesh.smooth_triangles;
+    m.rules = mesh.rules;
     auto const add_vertex = [&](std::uint32_t v, HalfEdge fan) {
         of_fan[fan] = std::uint32_t(m.positions.size());
         m.positions.push_back(mesh.positions[v]);
@@ -190,6 +188,9 @@ ManifoldMesh make_manifold(ControlMesh mesh)
         each_copy(ordered_edge(c.a, c.b), [&](Edge e) {
             m.creases.push_back({e.first, e.second, c.sharpness});
         });
+    for (HalfEdge h = 0; h < corners; ++h)
+        if (std::binary_search(mesh.concave.begin(), mesh.concave.end(), kept.corners[h]))
+            m.concave.push_back(h);
     std::vector<std::uint32_t> kept_as(mesh.faces(), Topology::kNone);
     for (std::uint32_t f = 0; f < kept.faces.size(); ++f) kept_as[kept.faces[f]] = f;
     for (std::uint32_t f : mesh.holes)

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -30,6 +31,26 @@ enum class BoundaryRule {
 enum class CreaseMethod {
     Normal,  ///< by one a step
     Chaikin, ///< by one a step, after a mean with the other creases at the edge's end
+};
+
+/// How a smooth edge beside a sharp vertex is split (docs/math/subdivision.md, 5.2).
+enum class SectorRules {
+    OpenSubdiv, ///< as any other: the plain edge point
+    Biermann,   ///< leans to the sharp end, by the angle of the sector that the edge is in
+};
+
+/// How a mesh is subdivided, where its tags and faces leave a choice.
+struct SubdivisionRules {
+    BoundaryRule boundary = BoundaryRule::EdgeAndCorner;
+    CreaseMethod crease_method = CreaseMethod::Normal;
+    bool smooth_triangles = false; ///< other weights for the edges of triangles
+    SectorRules sectors = SectorRules::OpenSubdiv;
+    /// How far a step moves the rings of tagged and extraordinary vertices into a plane, 0 to 1,
+    /// with SectorRules::Biermann; without a value only those of concave sectors, as far as they
+    /// need it.
+    std::optional<double> flatness = {};
+
+    bool operator==(SubdivisionRules const&) const = default;
 };
 
 /// From this sharpness on an edge or vertex stays as sharp at every step, as in OpenSubdiv.
@@ -60,9 +81,11 @@ struct ControlMesh {
     std::vector<Crease> creases;
     std::vector<Corner> corners;
     std::vector<std::uint32_t> holes; ///< faces that shape the surface but are not drawn
-    BoundaryRule boundary = BoundaryRule::EdgeAndCorner;
-    CreaseMethod crease_method = CreaseMethod::Normal;
-    bool smooth_triangles = false; ///< other weights for the edges of triangles
+    /// With SectorRules::Biermann: of each concave sector of a sharp corner the corner of its first
+    /// face, which follows its first sharp edge counter-clockwise; positions in face_vertices,
+    /// ascending (mark_concave_sectors()).
+    std::vector<std::uint32_t> concave;
+    SubdivisionRules rules;
 
     // What joins, cuts and sorts have changed: nothing in a mesh as its file has it.
     std::vector<std::uint32_t> file_vertices, file_faces; ///< numbers in the file, from 0
@@ -71,7 +94,7 @@ struct ControlMesh {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> slits;
 
     /// Whether the boundary curve is smooth through a vertex with one face.
-    bool smooth_corners() const { return boundary != BoundaryRule::EdgeAndCorner; }
+    bool smooth_corners() const { return rules.boundary != BoundaryRule::EdgeAndCorner; }
     std::uint32_t file_vertex(std::uint32_t v) const
     {
         return file_vertices.empty() ? v : file_vertices[v];

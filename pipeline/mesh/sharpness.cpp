@@ -106,7 +106,7 @@ Sharpness::Sharpness(Topology const& topology) : topology_(&topology)
         edge_[h] = edge_[other] = c.sharpness;
         tagged_[c.a] = tagged_[c.b] = 1;
     }
-    if (mesh.crease_method == CreaseMethod::Chaikin && !edge_.empty()) {
+    if (mesh.rules.crease_method == CreaseMethod::Chaikin && !edge_.empty()) {
         end_.resize(mesh.positions.size());
         for (std::uint32_t v = 0; v < mesh.positions.size(); ++v)
             for (HalfEdge h : topology.ring(v)) end_[v].add(edge(h)); // a boundary adds nothing

@@ -40,7 +40,11 @@ ControlMesh sort_by_valence(ControlMesh const& mesh, SubdivisionTables const& ta
     }
     out.coordinates = mesh.coordinates;
     std::vector<std::uint32_t> face;
+    std::vector<std::uint32_t> corner_now(mesh.concave.empty() ? 0 : mesh.face_vertices.size());
     for (std::uint32_t f : faces.old) {
+        if (!mesh.concave.empty())
+            std::iota(corner_now.begin() + mesh.face_start[f],
+                      corner_now.begin() + mesh.face_start[f + 1], out.face_start.back());
         face.clear();
         for (std::uint32_t v : mesh.face(f)) face.push_back(vertices.now[v]);
         out.add_face(face);
@@ -56,11 +60,11 @@ ControlMesh sort_by_valence(ControlMesh const& mesh, SubdivisionTables const& ta
     for (std::uint32_t f : mesh.holes) out.holes.push_back(faces.now[f]);
     for (auto const& [a, b] : mesh.slits)
         out.slits.push_back(ordered_edge(vertices.now[a], vertices.now[b]));
+    for (std::uint32_t h : mesh.concave) out.concave.push_back(corner_now[h]);
+    std::sort(out.concave.begin(), out.concave.end());
     std::sort(out.holes.begin(), out.holes.end());
     std::sort(out.slits.begin(), out.slits.end());
-    out.boundary = mesh.boundary;
-    out.crease_method = mesh.crease_method;
-    out.smooth_triangles = mesh.smooth_triangles;
+    out.rules = mesh.rules;
     out.cut_edges = mesh.cut_edges;
     return out;
 }

@@ -42,7 +42,7 @@ private:
 inline int triangles_to_smooth(Topology const& t, std::uint32_t face, std::uint32_t other)
 {
     ControlMesh const& mesh = t.mesh();
-    if (!mesh.smooth_triangles) return 0;
+    if (!mesh.rules.smooth_triangles) return 0;
     return (mesh.face(face).size() == 3) + (mesh.face(other).size() == 3);
 }
 

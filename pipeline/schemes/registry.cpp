@@ -265,7 +265,8 @@ void warn_of_tags(SchemeInfo const& info, RefinedMesh const& refined, std::vecto
         std::count_if(mesh.creases.begin(), mesh.creases.end(), [&](ControlMesh::Crease const& c) {
             return is_left(c.sharpness) && is_inside(topology, c);
         });
-    if (creases == 0 && mesh.crease_method == CreaseMethod::Chaikin) // sharper ones lend it some
+    if (creases == 0 &&
+        mesh.rules.crease_method == CreaseMethod::Chaikin) // sharper ones lend it some
         creases = std::any_of(
             refined.mesh().creases.begin(), refined.mesh().creases.end(),
             [&](ControlMesh::Crease const& c) { return is_inside(refined.topology(), c); });
@@ -282,7 +283,7 @@ void warn_of_tags(SchemeInfo const& info, RefinedMesh const& refined, std::vecto
     bool triangles = false;
     for (std::size_t f = 0; f < drawn.faces() && !triangles; ++f)
         triangles = drawn.face(f).size() == 3;
-    if (drawn.smooth_triangles && triangles)
+    if (drawn.rules.smooth_triangles && triangles)
         out.push_back("triangles are drawn without the weights of smoothtriangles: a step of "
                       "subdivision has them");
 }
@@ -309,8 +310,9 @@ bool resolve_sort(SchemeInfo const& info, int steps, Parameters& parameters)
 }
 
 // What the scheme takes is refined, anything else refused or, unless it must be taken, refined too.
-SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const& options,
-                    bool must_be_taken)
+// Without a scheme the mesh's rules stay what they are.
+SchemeOnMesh refine(SchemeInfo const& info, Scheme const* scheme, ControlMesh mesh,
+                    BuildOptions const& options, bool must_be_taken)
 {
     constexpr int kMost = 6;
     if (options.subdivide < 0)
@@ -330,6 +332,9 @@ SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const
         mesh = std::move(manifold.mesh);
         warn(out, options, in_words(manifold.repairs, options.lines));
     }
+    if (scheme)
+        scheme->set_rules(mesh, out.parameters,
+                          [&](std::string const& w) { warn(out, options, {w}); });
     MeshFacts sides;
     for (std::size_t f = 0; f < mesh.faces(); ++f) {
         std::size_t const n = mesh.face(f).size();
@@ -359,7 +364,7 @@ SchemeOnMesh refine(SchemeInfo const& info, ControlMesh mesh, BuildOptions const
 
 SchemeOnMesh refine_for_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options)
 {
-    return refine(scheme.info(), std::move(mesh), options, false);
+    return refine(scheme.info(), &scheme, std::move(mesh), options, false);
 }
 
 SchemeOnMesh refine_for_no_scheme(RefinementStep step, ControlMesh mesh,
@@ -369,13 +374,13 @@ SchemeOnMesh refine_for_no_scheme(RefinementStep step, ControlMesh mesh,
     none.name = "subdivide";
     none.takes.steps_with_polygons = 0;
     none.takes.step = step;
-    return refine(none, std::move(mesh), options, false);
+    return refine(none, nullptr, std::move(mesh), options, false);
 }
 
 SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options)
 {
     SchemeInfo const info = scheme.info();
-    SchemeOnMesh out = refine(info, std::move(mesh), options, true);
+    SchemeOnMesh out = refine(info, &scheme, std::move(mesh), options, true);
     out.patches = scheme.build(out.mesh, out.parameters);
     std::vector<std::string> more;
     if (auto const other = out.patches->another_way()) {

@@ -78,6 +78,12 @@ class Scheme {
 public:
     virtual ~Scheme() = default;
     virtual SchemeInfo info() const = 0;
+    /// Sets the mesh's rules of subdivision from the parameters, all of info().parameters, before a
+    /// step is taken. May warn, and throw MeshError for a mesh to which those rules do not apply.
+    virtual void set_rules(ControlMesh& /*mesh*/, Parameters const& /*parameters*/,
+                           WarningSink const& /*warn*/) const
+    {
+    }
     /// \param mesh        that meets info().takes
     /// \param parameters  all of info().parameters
     virtual std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,

@@ -81,7 +81,7 @@ ControlMesh mesh_of_samples(std::filesystem::path const& obj)
 {
     ControlMesh mesh = load_model(obj.string()).mesh;
     if (test::read_text(obj).find("t interpolateboundary") == std::string::npos)
-        mesh.boundary = BoundaryRule::EdgeOnly;
+        mesh.rules.boundary = BoundaryRule::EdgeOnly;
     return mesh;
 }
 
@@ -215,8 +215,8 @@ TEST_P(RefinedCage, HasOpenSubdivsPoints)
 {
     auto const& [name, steps] = GetParam();
     ControlMesh mesh = load_model(test::golden("limit/" + name + ".obj").string()).mesh;
-    bool const chaikin = mesh.crease_method == CreaseMethod::Chaikin;
-    EXPECT_TRUE(chaikin || mesh.smooth_triangles);
+    bool const chaikin = mesh.rules.crease_method == CreaseMethod::Chaikin;
+    EXPECT_TRUE(chaikin || mesh.rules.smooth_triangles);
     std::vector<Vec> x(mesh.positions.begin(), mesh.positions.end());
     for (int step = 0; step < steps; ++step) {
         Topology const topology(mesh);

@@ -75,9 +75,7 @@ void expect_same(ControlMesh const& a, ControlMesh const& b)
     EXPECT_EQ(creases[0], creases[1]);
     EXPECT_EQ(corners[0], corners[1]);
     EXPECT_EQ(a.holes, b.holes);
-    EXPECT_EQ(a.boundary, b.boundary);
-    EXPECT_EQ(a.crease_method, b.crease_method);
-    EXPECT_EQ(a.smooth_triangles, b.smooth_triangles);
+    EXPECT_EQ(a.rules, b.rules);
 }
 
 // Coordinates of any binade, texture coordinates, every tag, unused vertices.
@@ -107,9 +105,9 @@ ControlMesh random_tagged(std::uint32_t seed)
         if (f % 5 == 0) holes.insert(f);
     }
     m.holes.assign(holes.begin(), holes.end());
-    m.boundary = BoundaryRule(random() % 3);
-    m.crease_method = random() % 2 ? CreaseMethod::Chaikin : CreaseMethod::Normal;
-    m.smooth_triangles = random() % 2;
+    m.rules.boundary = BoundaryRule(random() % 3);
+    m.rules.crease_method = random() % 2 ? CreaseMethod::Chaikin : CreaseMethod::Normal;
+    m.rules.smooth_triangles = random() % 2;
     return m;
 }
 
@@ -219,7 +217,7 @@ TEST(ControlMeshWriter, SaysWhatAPlyLacks)
     EXPECT_EQ(left_out_of_ply(m), "1 crease");
     m.holes = {0, 1};
     EXPECT_EQ(left_out_of_ply(m), "1 crease and 2 holes");
-    m.boundary = BoundaryRule::EdgeOnly;
+    m.rules.boundary = BoundaryRule::EdgeOnly;
     EXPECT_EQ(left_out_of_ply(m), "1 crease, 2 holes and interpolateboundary");
 }
 

@@ -47,7 +47,7 @@ TEST(ObjReader, ReadsOpenSubdivTags)
     EXPECT_EQ(f.mesh.creases[0].sharpness, 2.5f);
     ASSERT_EQ(f.mesh.corners.size(), 1u);
     EXPECT_EQ(f.mesh.holes, std::vector<std::uint32_t>{2});
-    EXPECT_EQ(f.mesh.boundary, BoundaryRule::EdgeOnly);
+    EXPECT_EQ(f.mesh.rules.boundary, BoundaryRule::EdgeOnly);
 }
 
 TEST(ObjReader, AcceptsByteOrderMarkCarriageReturnsAndContinuations)
@@ -435,19 +435,19 @@ TEST(ObjReader, WarningsStandBeforeTheErrorThatFollows)
 TEST(ObjReader, CreaseMethodAndSmoothTrianglesAreWords)
 {
     ControlMesh const plain = read_obj(kCube, "a").mesh;
-    EXPECT_EQ(plain.crease_method, CreaseMethod::Normal);
-    EXPECT_FALSE(plain.smooth_triangles);
+    EXPECT_EQ(plain.rules.crease_method, CreaseMethod::Normal);
+    EXPECT_FALSE(plain.rules.smooth_triangles);
     ObjFile const tagged =
         read_obj(kCube + "t creasemethod 0/0/1 chaikin\nt smoothtriangles 0/0/1 smooth\n", "a");
-    EXPECT_EQ(tagged.mesh.crease_method, CreaseMethod::Chaikin);
-    EXPECT_TRUE(tagged.mesh.smooth_triangles);
+    EXPECT_EQ(tagged.mesh.rules.crease_method, CreaseMethod::Chaikin);
+    EXPECT_TRUE(tagged.mesh.rules.smooth_triangles);
     EXPECT_TRUE(tagged.warnings.empty());
     ObjFile const last =
         read_obj(kCube + "t creasemethod 0/0/1 chaikin\nt creasemethod 0/0/1 normal\n"
                          "t smoothtriangles 0/0/1 smooth\nt smoothtriangles 0/0/1 catmark\n",
                  "a");
-    EXPECT_EQ(last.mesh.crease_method, CreaseMethod::Normal);
-    EXPECT_FALSE(last.mesh.smooth_triangles);
+    EXPECT_EQ(last.mesh.rules.crease_method, CreaseMethod::Normal);
+    EXPECT_FALSE(last.mesh.rules.smooth_triangles);
 }
 
 // As regression/common/far_utils.h has it.

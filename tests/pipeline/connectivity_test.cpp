@@ -100,7 +100,7 @@ TEST(GregoryStencil, HolesAndBoundaryRuleNoneAreNotDrawn)
     m.holes = {0, 5};
     EXPECT_EQ(drawn(), faces - 2);
     m.holes.clear();
-    m.boundary = BoundaryRule::None;
+    m.rules.boundary = BoundaryRule::None;
     EXPECT_LT(drawn(), faces);
 }
 
@@ -115,7 +115,7 @@ ControlMesh grid3()
         std::uint32_t const face[] = {v, v + 1, v + 5, v + 4};
         m.add_face(face);
     }
-    m.boundary = BoundaryRule::None;
+    m.rules.boundary = BoundaryRule::None;
     return m;
 }
 

@@ -104,13 +104,13 @@ TEST(Refinement, ChildrenOfHolesAreHolesAndTheBoundaryRuleStays)
     for (BoundaryRule rule :
          {BoundaryRule::None, BoundaryRule::EdgeAndCorner, BoundaryRule::EdgeOnly}) {
         ControlMesh mesh = load_model("jug").mesh; // quads and triangles
-        mesh.boundary = rule;
+        mesh.rules.boundary = rule;
         std::set<std::uint32_t> holes;
         for (std::uint32_t f = 3; f < mesh.faces(); f += 7) holes.insert(f);
         mesh.holes.assign(holes.begin(), holes.end());
         for (int steps = 0; steps <= 3; ++steps) {
             RefinedMesh const m(mesh, steps, catmull_clark_step);
-            EXPECT_EQ(m.mesh().boundary, rule);
+            EXPECT_EQ(m.mesh().rules.boundary, rule);
             std::set<std::uint32_t> expected;
             for (std::uint32_t f = 0; f < m.mesh().faces(); ++f)
                 if (holes.count(m.place(f).face)) expected.insert(f);

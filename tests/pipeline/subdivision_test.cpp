@@ -100,7 +100,7 @@ TEST(SubdivisionTables, HaveBoundariesInThePapersEncoding)
     }
     EXPECT_EQ(t.vertex_offset_valence, (Words{0, 0, 0, 1, 2, 0, 2, 0, 2, 1, 4, 0}));
     EXPECT_EQ(t.vertex_index, (Words{2, 0, 3, 5}));
-    m.boundary = BoundaryRule::EdgeOnly; // smooth through the corners
+    m.rules.boundary = BoundaryRule::EdgeOnly; // smooth through the corners
     EXPECT_EQ(tables_of(m).vertex_index.size(), 12u);
 }
 
@@ -126,7 +126,7 @@ TEST(SubdivisionTables, HaveSharpTagsInTheSameEncodingAndBlendTheRest)
     for (float w : t.blended.weights) sum += w;
     EXPECT_EQ(sum, 1);
     m.creases = {};
-    m.smooth_triangles = true;
+    m.rules.smooth_triangles = true;
     EXPECT_EQ(tables_of(m).blended.target.size(), 8u) << "every edge has a triangle";
 }
 

@@ -196,9 +196,9 @@ ControlMesh with_random_tags(ControlMesh mesh, std::uint32_t seed)
     }
     for (std::uint32_t v = 0; v < mesh.positions.size(); ++v)
         if (random() % 12 == 0) mesh.corners.push_back({v, sharpness()});
-    mesh.boundary = random() % 2 ? BoundaryRule::EdgeOnly : BoundaryRule::EdgeAndCorner;
-    mesh.crease_method = random() % 2 ? CreaseMethod::Chaikin : CreaseMethod::Normal;
-    mesh.smooth_triangles = random() % 2;
+    mesh.rules.boundary = random() % 2 ? BoundaryRule::EdgeOnly : BoundaryRule::EdgeAndCorner;
+    mesh.rules.crease_method = random() % 2 ? CreaseMethod::Chaikin : CreaseMethod::Normal;
+    mesh.rules.smooth_triangles = random() % 2;
     return mesh;
 }
 
