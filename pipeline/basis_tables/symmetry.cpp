@@ -8,7 +8,12 @@ PatchTypeTables in_single_precision(PatchType const& type, BasisTables const& ta
     auto const rounded = [](std::vector<double> const& x) {
         return std::vector<float>(x.begin(), x.end());
     };
-    return {type, tables.points, rounded(tables.position), rounded(tables.du), rounded(tables.dv)};
+    return {type,
+            tables.points,
+            tables.beyond,
+            rounded(tables.position),
+            rounded(tables.du),
+            rounded(tables.dv)};
 }
 
 SymmetryReport enforce_symmetry(std::span<PatchTypeTables>, std::span<Joint const> joints)

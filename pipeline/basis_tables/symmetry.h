@@ -13,7 +13,8 @@ namespace tessemu {
 /// Tables of one patch type in single precision.
 struct PatchTypeTables {
     PatchType type;
-    int points = 0; ///< control points
+    int points = 0;                    ///< control points
+    std::vector<std::uint16_t> beyond; ///< as BasisTables has it
     /// As BasisTables has them.
     std::vector<float> position, du, dv;
 };
