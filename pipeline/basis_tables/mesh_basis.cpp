@@ -78,16 +78,15 @@ public:
         if (rules.sectors == SectorRules::Biermann) {
             for (int v = 0; v < 3; ++v) {
                 VertexRing const ring = ring_at(beyond[std::size_t(v)]).first;
-                bool const is_edge = v != PatchType::DiagonalVertex;
                 std::size_t const edge =
                     (ring.position + (v == PatchType::RightVertex)) % ring.edge_count();
-                bool const leans =
-                    is_edge && ring.is_tagged() && !(ring.edge(edge) > 0) && !is_right_angled(ring);
-                if (leans || is_flattened(ring)) add_beyond(v, beyond[std::size_t(v)], out);
+                bool const leans = v != PatchType::DiagonalVertex && ring.leans(ring.edge(edge));
+                if (leans || ring.is_flattened(rules.flatness))
+                    add_beyond(v, beyond[std::size_t(v)], out);
             }
             bool const any = std::any_of(type.beyond.begin(), type.beyond.end(),
                                          [](auto const& ring) { return ring.has_value(); });
-            if (any || corner.is_tagged() || is_flattened(corner)) {
+            if (any || corner.is_tagged() || corner.is_flattened(rules.flatness)) {
                 type.sectors = SectorRules::Biermann;
                 type.flatness = rules.flatness;
             }
@@ -183,19 +182,6 @@ private:
     {
         auto const& all = t_.mesh().concave;
         return std::binary_search(all.begin(), all.end(), first_of_sector);
-    }
-    // Biermann's edge rule is the plain one in its sector.
-    static bool is_right_angled(VertexRing const& r)
-    {
-        if (r.vertex > 0) return !r.concave && r.faces == 1;
-        return r.closed ? r.faces == 4 : r.faces == 2;
-    }
-    // Its ring is moved in each step.
-    bool is_flattened(VertexRing const& r) const
-    {
-        auto const& flatness = t_.mesh().rules.flatness;
-        if (!flatness) return r.concave;
-        return *flatness > 0 && (r.is_tagged() || r.faces != 4);
     }
     void add_beyond(int v, HalfEdge h, FoundPatch& out)
     {
@@ -325,10 +311,12 @@ MeshBasis::MeshBasis(RefinedMesh const& refined, BasisTableStore* store, BasisOp
     };
     for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
         HalfEdge const other = topology.twin(h);
-        if (other == Topology::kNone) continue;
-        Joint const joint{patches_[topology.face_of(h)].type, side_of(h),
-                          patches_[topology.face_of(other)].type, side_of(other)};
-        if (joint.is_canonical()) joints.insert(joint);
+        PatchSide const side = side_of(h);
+        if (other == Topology::kNone || (side != PatchSide::Lower && side != PatchSide::Right))
+            continue;
+        assert(side_of(other) == (side == PatchSide::Lower ? PatchSide::Left : PatchSide::Upper));
+        joints.insert(
+            {patches_[topology.face_of(h)].type, side, patches_[topology.face_of(other)].type});
     }
     symmetry_ = enforce_symmetry(types_, std::vector<Joint>(joints.begin(), joints.end()));
 }

@@ -130,6 +130,19 @@ bool VertexRing::is_semi_sharp() const
            std::any_of(edges.begin(), edges.end(), is_finite_sharpness);
 }
 
+bool VertexRing::leans(float sharpness) const
+{
+    if (!is_tagged() || sharpness > 0) return false;
+    if (vertex > 0) return concave || faces != 1; // an angle of pi/2 in all
+    return faces != (closed ? 4 : 2);             // of pi/2 each
+}
+
+bool VertexRing::is_flattened(std::optional<double> flatness) const
+{
+    if (!flatness) return concave;
+    return *flatness > 0 && (is_tagged() || faces != 4);
+}
+
 PatchFamily PatchType::family() const
 {
     if (corner.is_semi_sharp() || crease_method == CreaseMethod::Chaikin)
