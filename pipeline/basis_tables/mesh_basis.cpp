@@ -293,15 +293,29 @@ MeshBasis::MeshBasis(RefinedMesh const& refined, BasisTableStore* store, BasisOp
         done += count;
         tell();
     }
-    for (std::size_t i = 0; i < types.size(); ++i)
-        types_.push_back(in_single_precision(types[i], *tables[i]));
+    std::map<std::pair<std::uint32_t, std::vector<std::uint16_t>>, std::uint32_t> variants;
+    std::vector<std::uint32_t> vertices;
+    std::map<std::uint32_t, std::uint16_t> number_of; // by vertex
     for (std::size_t f = 0; f < patches_.size(); ++f) {
-        patches_[f].first_point = std::uint32_t(points_.size());
-        finder.add_points(found[f], types_[patches_[f].type].beyond, points_);
+        BasisPatch& patch = patches_[f];
+        BasisTables const& of_type = *tables[patch.type];
+        vertices.clear(), number_of.clear();
+        finder.add_points(found[f], of_type.beyond, vertices);
+        patch.first_point = std::uint32_t(points_.size());
+        std::vector<std::uint16_t> point_of;
+        for (std::uint32_t v : vertices) {
+            auto const [number, is_new] = number_of.try_emplace(v, std::uint16_t(number_of.size()));
+            if (is_new) points_.push_back(v);
+            point_of.push_back(number->second);
+        }
+        auto const [variant, is_new] =
+            variants.try_emplace({patch.type, point_of}, std::uint32_t(types_.size()));
+        if (is_new)
+            types_.push_back(in_single_precision(types[patch.type], of_type, std::move(point_of)));
+        patch.type = variant->second;
     }
     if (!options.enforced) return;
 
-    // What patches share: a type's side against another's.
     std::set<Joint> joints;
     std::vector<std::uint32_t> const& start = mesh.face_start;
     auto const side_of = [&](HalfEdge h) { // of its face's patch, from its corner on

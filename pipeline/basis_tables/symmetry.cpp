@@ -7,22 +7,19 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace tessemu {
 
 namespace {
 
-// A control point by its place, from the patch's corner or from a vertex beyond.
+// A control point of the ring of a vertex beyond.
 struct PointName {
-    // Corner: V's ring, with index -1 for V. Right, Diagonal, Upper: the rings of (2,0), (2,2),
-    // (0,2). Grid: a place that none of these names.
-    enum Of { Right, Diagonal, Upper, Corner, Grid };
-    int of, index, is_face;
+    int of, index, is_face; // of: PatchType::Beyond
 
     auto operator<=>(PointName const&) const = default;
 };
-constexpr PointName kV{PointName::Corner, -1, 0};
 
 int wrapped(int i, int n)
 {
@@ -34,18 +31,19 @@ using Cell = std::array<int, 2>; // column, row of the control points' grid
 // Control points by where they lie; none: -1.
 class PointsOfType {
 public:
-    explicit PointsOfType(PatchTypeTables const& t) : type_(&t.type)
+    explicit PointsOfType(PatchTypeTables const& t) : type_(&t.type), point_of_(t.point_of)
     {
+        auto const take = [this](int& number) { return int(point_of_[std::size_t(number++)]); };
         VertexRing const& c = type_->corner;
         int const j = c.position, ring = type_->ring_points();
         int next = ring;
-        for (Cell cell : {Cell{2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}}) grid_[cell] = next++;
-        if (type_->has_lower()) grid_[{2, -1}] = next++;
-        if (type_->has_left()) grid_[{-1, 2}] = next++;
+        for (Cell cell : {Cell{2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}}) grid_[cell] = take(next);
+        if (type_->has_lower()) grid_[{2, -1}] = take(next);
+        if (type_->has_left()) grid_[{-1, 2}] = take(next);
         auto const names = type_->beyond_points();
         for (std::uint16_t i : t.beyond)
-            beyond_[{names[i].vertex, int(names[i].index), names[i].is_face}] = next++;
-        assert(next == t.points);
+            beyond_[{names[i].vertex, int(names[i].index), names[i].is_face}] = take(next);
+        assert(std::size_t(next) == t.point_of.size());
         grid_[{0, 0}] = 0;
         grid_[{1, 0}] = edge(j);
         grid_[{1, 1}] = face(j);
@@ -65,13 +63,13 @@ public:
     {
         VertexRing const& c = type_->corner;
         if (c.closed) i = wrapped(i, c.faces);
-        return i < 0 || i >= int(c.edge_count()) ? -1 : 1 + 2 * i;
+        return i < 0 || i >= int(c.edge_count()) ? -1 : point_of_[std::size_t(1 + 2 * i)];
     }
     int face(int i) const
     {
         VertexRing const& c = type_->corner;
         if (c.closed) i = wrapped(i, c.faces);
-        return i < 0 || i >= c.faces ? -1 : 2 + 2 * i;
+        return i < 0 || i >= c.faces ? -1 : point_of_[std::size_t(2 + 2 * i)];
     }
     int at(Cell cell) const
     {
@@ -88,6 +86,7 @@ public:
 
 private:
     PatchType const* type_;
+    std::span<std::uint16_t const> point_of_;
     std::map<Cell, int> grid_;
     std::map<PointName, int> beyond_;
 };
@@ -145,7 +144,7 @@ Match match_of(Joint const& joint, PatchTypeTables const& ta, PatchTypeTables co
         for (int i = 0; i < int(ca.edge_count()); ++i) out.set(a.edge(i), b.edge(first - i));
         for (int i = 0; i < n; ++i) out.set(a.face(i), b.face(first - 1 - i));
         for (auto const& [cell, point] : a.grid())
-            if (point >= ta.type.ring_points()) out.set(point, b.at({cell[1], cell[0]}));
+            if (cell[0] == 2 || cell[1] == 2) out.set(point, b.at({cell[1], cell[0]}));
         return out;
     }
     if (joint.side == PatchSide::Lower) {
@@ -163,8 +162,8 @@ Match match_of(Joint const& joint, PatchTypeTables const& ta, PatchTypeTables co
         // a's (2,0) is b's (0,2); it looks at it by the face above the line, b by that below.
         if (auto const& ring = ta.type.beyond[PatchType::RightVertex])
             for (auto const& [name, point] : a.beyond())
-                if (name.of == PointName::Right)
-                    out.set(point, b.beyond({PointName::Upper, seen_by(*ring, name.index, -1),
+                if (name.of == PatchType::RightVertex)
+                    out.set(point, b.beyond({PatchType::UpperVertex, seen_by(*ring, name.index, -1),
                                              name.is_face}));
         return out;
     }
@@ -173,14 +172,14 @@ Match match_of(Joint const& joint, PatchTypeTables const& ta, PatchTypeTables co
         if (cell[0] >= 0) out.set(point, b.at({cell[1], 2 - cell[0]}));
     if (tb.type.beyond[PatchType::UpperVertex])
         for (auto const& [name, point] : b.beyond()) {
-            if (name.of != PointName::Upper) continue;
+            if (name.of != PatchType::UpperVertex) continue;
             out.set(name.is_face ? a.face(name.index) : a.edge(name.index), point);
         }
     for (auto const& [name, point] : a.beyond()) {
-        if (name.of == PointName::Right)
+        if (name.of == PatchType::RightVertex)
             out.set(point, name.is_face ? b.face(name.index) : b.edge(name.index));
-        if (name.of == PointName::Diagonal)
-            out.set(point, b.beyond({PointName::Right, name.index, name.is_face}));
+        if (name.of == PatchType::DiagonalVertex)
+            out.set(point, b.beyond({PatchType::RightVertex, name.index, name.is_face}));
     }
     return out;
 }
@@ -246,15 +245,11 @@ private:
     std::vector<char> is_opposite_, is_zero_;
 };
 
-// Bits between two numbers; 0 lies between the signs.
+// Between two numbers of one sign.
 std::uint32_t ulps_between(float a, float b)
 {
-    auto const ordered = [](float x) {
-        auto const bits = std::int64_t(std::bit_cast<std::uint32_t>(x));
-        return bits & 0x80000000 ? -(bits & 0x7fffffff) : bits;
-    };
-    std::int64_t const d = std::abs(ordered(a) - ordered(b));
-    return std::uint32_t(std::min<std::int64_t>(d, 0xffffffff));
+    std::uint32_t const x = std::bit_cast<std::uint32_t>(a), y = std::bit_cast<std::uint32_t>(b);
+    return x < y ? y - x : x - y;
 }
 
 // Entries on the sides of all types, by table: 0 position, 1 du, 2 dv.
@@ -313,17 +308,24 @@ Tangents tangents_of(PatchSide side)
 
 } // namespace
 
-PatchTypeTables in_single_precision(PatchType const& type, BasisTables const& tables)
+PatchTypeTables in_single_precision(PatchType const& type, BasisTables const& tables,
+                                    std::vector<std::uint16_t> point_of)
 {
-    auto const rounded = [](std::vector<double> const& x) {
-        return std::vector<float>(x.begin(), x.end());
+    if (point_of.empty()) {
+        point_of.resize(std::size_t(tables.points));
+        std::iota(point_of.begin(), point_of.end(), std::uint16_t(0));
+    }
+    int const points = 1 + *std::max_element(point_of.begin(), point_of.end());
+    auto const rounded = [&](std::vector<double> const& x) {
+        std::vector<double> sums(std::size_t(points) * kTableSamples, 0.0);
+        for (std::size_t k = 0; k < point_of.size(); ++k)
+            for (std::size_t s = 0; s < kTableSamples; ++s)
+                sums[point_of[k] * std::size_t(kTableSamples) + s] += x[k * kTableSamples + s];
+        return std::vector<float>(sums.begin(), sums.end());
     };
-    return {type,
-            tables.points,
-            tables.beyond,
-            rounded(tables.position),
-            rounded(tables.du),
-            rounded(tables.dv)};
+    auto position = rounded(tables.position), du = rounded(tables.du), dv = rounded(tables.dv);
+    return {type,          points,       std::move(point_of), tables.beyond, std::move(position),
+            std::move(du), std::move(dv)};
 }
 
 namespace {
@@ -344,6 +346,12 @@ PatchType mirror_image(PatchType t)
         std::rotate(c.edges.rbegin(), c.edges.rbegin() + 2 % c.faces, c.edges.rend());
     if (!c.closed) c.position = std::uint16_t(c.faces - 1 - c.position);
     return t;
+}
+
+// With two faces around, points on both sides of the patch are one, and its neighbours' are not.
+bool is_fold(PatchType const& t)
+{
+    return t.corner.closed && t.corner.faces == 2;
 }
 
 // Whether a neighbour across Right or Upper would need to know the corner.
@@ -377,10 +385,8 @@ std::vector<Joint> possible_joints(std::span<PatchTypeTables const> types)
     for (auto const& [type, i] : numbers) {
         VertexRing const& c = type.corner;
         float const lower = lower_sharpness(type), left = left_sharpness(type);
-        // With two faces around, points on both sides of the patch are one, others' are not.
-        bool const is_fold = c.closed && c.faces == 2;
-        if (!is_fold && !reaches_beyond(type, lower)) right[is_infinite(lower)].push_back(i);
-        if (!is_fold && !reaches_beyond(type, left)) upper[is_infinite(left)].push_back(i);
+        if (!is_fold(type) && !reaches_beyond(type, lower)) right[is_infinite(lower)].push_back(i);
+        if (!is_fold(type) && !reaches_beyond(type, left)) upper[is_infinite(left)].push_back(i);
         if (c.closed || c.position > 0) {
             if (auto const below = numbers.find(neighbour_below(type)); below != numbers.end())
                 out.insert({i, PatchSide::Lower, below->second});
@@ -390,7 +396,7 @@ std::vector<Joint> possible_joints(std::span<PatchTypeTables const> types)
         if (!c.closed && c.position + 1 == c.faces) crossing[c.vertex][1].push_back(i);
         if (auto const image = numbers.find(mirror_image(type)); image != numbers.end())
             for (PatchSide side : {PatchSide::Lower, PatchSide::Right})
-                if (side == PatchSide::Lower || !is_fold)
+                if (side == PatchSide::Lower || !is_fold(type))
                     out.insert({i, side, image->second, true});
     }
     for (int tag : {0, 1}) join_all(PatchSide::Right, right[tag], upper[tag]);
@@ -422,6 +428,23 @@ void count_classes(std::span<PatchTypeTables const> types, std::span<Joint const
                 directed.join(at(joint.a, joint.side, k),
                               at(joint.b, other_side(joint.side), other));
     }
+    // What (2,0), (2,1) and (2,-1) weigh on a side from the corner does not depend on its ring.
+    std::map<int, std::size_t> two_ring;
+    for (std::size_t type = 0; type < types.size(); ++type) {
+        PatchTypeTables const& t = types[type];
+        if (t.type.family() == PatchFamily::SemiSharp) continue;
+        PointsOfType const points(t);
+        for (int d : {-1, 0, 1}) {
+            auto const join = [&](PatchSide side, float line, int point) {
+                if (line > 0 || point < 0) return;
+                std::size_t const edge = at(type, side, point);
+                auto const [found, is_new] = two_ring.try_emplace(std::abs(d), edge);
+                if (!is_new) directed.join(found->second, edge);
+            };
+            join(PatchSide::Lower, lower_sharpness(t.type), points.at({2, d}));
+            join(PatchSide::Left, left_sharpness(t.type), points.at({d, 2}));
+        }
+    }
     SignedSets undirected = directed;
     std::map<SymmetryReport::Classes*, std::array<std::set<std::size_t>, 2>> found;
     std::vector<std::pair<SymmetryReport::Classes*, std::size_t>> edges;
@@ -437,6 +460,7 @@ void count_classes(std::span<PatchTypeTables const> types, std::span<Joint const
             bool const at_tag =
                 is_infinite(is_lower ? lower_sharpness(t.type) : left_sharpness(t.type));
             bool const off_corner = side == PatchSide::Right || side == PatchSide::Upper;
+            if (off_corner && is_fold(t.type)) continue;
             for (int k = 0; k < t.points; ++k) {
                 bool any = false;
                 for (std::size_t s = 0; s < kTableSide && !any; ++s)
@@ -542,12 +566,15 @@ SymmetryReport enforce_symmetry(std::span<PatchTypeTables> types, std::span<Join
             float const value = is_zero || v.least == 0 ? 0.0f : opposite ? -v.least : v.least;
             if (std::bit_cast<std::uint32_t>(value) == std::bit_cast<std::uint32_t>(x)) return;
             if (value != x) {
-                std::uint32_t const ulps = ulps_between(value, x);
                 ++out.changed;
-                out.changed_ulps += ulps;
-                bool const one_sign = (value > 0) == (x > 0) && value != 0;
-                if (one_sign) out.most_ulps = std::max(out.most_ulps, ulps);
                 any = true;
+                if (value == 0 || (value > 0) != (x > 0)) {
+                    ++out.zeroed;
+                } else {
+                    std::uint32_t const ulps = ulps_between(value, x);
+                    out.changed_ulps += ulps;
+                    out.most_ulps = std::max(out.most_ulps, ulps);
+                }
             }
             x = value; // and -0 is 0
         });

@@ -20,12 +20,17 @@ namespace tessemu {
 /// Tables of one patch type in single precision.
 struct PatchTypeTables {
     PatchType type;
-    int points = 0;                    ///< control points
+    int points = 0; ///< control points, each a vertex of its own
+    /// Of each control point of BasisTables, in its order: which of these it is. In tiny meshes two
+    /// of them may be one vertex.
+    std::vector<std::uint16_t> point_of;
     std::vector<std::uint16_t> beyond; ///< as BasisTables has it
-    /// As BasisTables has them.
+    /// As BasisTables has them; of control points that are one vertex their sums.
     std::vector<float> position, du, dv;
 };
-PatchTypeTables in_single_precision(PatchType const& type, BasisTables const& tables);
+/// \param point_of  empty: each is one of its own
+PatchTypeTables in_single_precision(PatchType const& type, BasisTables const& tables,
+                                    std::vector<std::uint16_t> point_of = {});
 
 /// v = 0, u = 1, v = 1 and u = 0, each followed away from the patch's corner or the edges at it:
 /// Lower and Left from (0,0), Right from (1,0), Upper from (0,1).
