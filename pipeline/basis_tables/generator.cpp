@@ -4,6 +4,7 @@
 #include "pipeline/mesh/catmull_clark.h"
 #include "pipeline/mesh/limit.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace tessemu {
@@ -18,7 +19,7 @@ struct Place {
     bool on_patch() const { return i >= 0; }
 };
 
-// A piece of a mesh around the patch. What else its boundary cuts off has no influence on it.
+// A piece of a mesh around the patch. What its boundary cuts off has no influence on the patch.
 struct Piece {
     ControlMesh mesh;
     std::vector<X> points;      // by vertex
@@ -27,57 +28,189 @@ struct Piece {
     std::uint32_t corner = 0;   // V
 };
 
-void add_quad(ControlMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d)
-{
-    std::uint32_t const face[] = {a, b, c, d};
-    mesh.add_face(face);
-}
-
-// Vertices are the control points in their order.
-Piece control_piece(PatchType const& type)
-{
-    VertexRing const& ring = type.corner;
-    std::uint32_t const n = ring.faces, j = ring.position;
-    auto const e = [&](std::uint32_t i) { return 1 + 2 * (ring.closed ? i % n : i); };
-    auto const f = [&](std::uint32_t i) { return 2 + 2 * (i % n); };
-    std::uint32_t next = std::uint32_t(type.ring_points());
-    std::uint32_t const x20 = next++, x21 = next++, x22 = next++, x12 = next++, x02 = next++;
-    Piece out;
-    ControlMesh& mesh = out.mesh;
-    for (std::uint32_t i = 0; i < n; ++i) add_quad(mesh, 0, e(i), f(i), e(i + 1));
-    add_quad(mesh, e(j), x20, x21, f(j));
-    add_quad(mesh, f(j), x21, x22, x12);
-    add_quad(mesh, e(j + 1), f(j), x12, x02);
-    if (type.has_lower()) add_quad(mesh, f(j + n - 1), next++, x20, e(j));
-    if (type.has_left()) add_quad(mesh, f(j + 1), e(j + 1), x02, next++);
-    assert(next == std::uint32_t(type.points()));
-    mesh.positions.resize(next);
-    // No vertex is sharp because one face of it is in the piece.
-    mesh.boundary = BoundaryRule::EdgeOnly;
-    if (ring.vertex > 0) mesh.corners.push_back({0, ring.vertex});
-    for (std::uint32_t i = 0; i < ring.edge_count(); ++i)
-        if (float const s = ring.edge(i); s > 0) mesh.creases.push_back({0, e(i), s});
-    // The edges beyond, where they are on the patch.
-    if (float const s = ring.edge(j); s > 0) mesh.creases.push_back({e(j), x20, s});
-    if (float const s = ring.edge((j + 1) % ring.edge_count()); s > 0)
-        mesh.creases.push_back({e(j + 1), x02, s});
-    for (std::uint32_t v = 0; v < next; ++v) {
-        X unit(0.0, next);
-        unit[v] = 1;
-        out.points.push_back(std::move(unit));
+class PieceBuilder {
+public:
+    // Vertices are the control points in their order, those of beyond_points(), then others that
+    // carry tags alone.
+    explicit PieceBuilder(PatchType const& type)
+        : type_(type),
+          ring_(type.corner),
+          n_(type.corner.faces),
+          j_(type.corner.position),
+          x20_(std::uint32_t(type.ring_points())),
+          vertices_(std::uint32_t(type.points()))
+    {
+        ControlMesh& mesh = out_.mesh;
+        mesh.rules.crease_method = type.crease_method;
+        mesh.rules.sectors = type.sectors;
+        mesh.rules.flatness = type.flatness;
+        // No vertex is sharp because one face of it is in the piece.
+        mesh.rules.boundary = BoundaryRule::EdgeOnly;
+        add_corner();
+        for (int v = 0; v < 3; ++v)
+            if (type.beyond[std::size_t(v)]) add_beyond(v, *type.beyond[std::size_t(v)]);
+        std::uint32_t const with_weights = vertices_;
+        if (type.crease_method == CreaseMethod::Chaikin) add_ends();
+        mesh.positions.resize(vertices_);
+        std::sort(mesh.concave.begin(), mesh.concave.end());
+        for (std::uint32_t v = 0; v < vertices_; ++v) {
+            X unit(0.0, with_weights);
+            if (v < with_weights) unit[v] = 1;
+            out_.points.push_back(std::move(unit));
+        }
+        constexpr int kCells = kTableSide - 1;
+        out_.places.resize(vertices_);
+        out_.places[0] = {0, 0};
+        out_.places[e(j_)] = {kCells, 0};
+        out_.places[f(j_)] = {kCells, kCells};
+        out_.places[e(j_ + 1)] = {0, kCells};
+        out_.of_patch.assign(mesh.faces(), 0);
+        out_.of_patch[j_] = 1;
     }
-    constexpr int kCells = kTableSide - 1;
-    out.places.resize(next);
-    out.places[0] = {0, 0};
-    out.places[e(j)] = {kCells, 0};
-    out.places[f(j)] = {kCells, kCells};
-    out.places[e(j + 1)] = {0, kCells};
-    out.of_patch.assign(mesh.faces(), 0);
-    out.of_patch[j] = 1;
-    return out;
-}
 
-// The faces that touch the patch, after a step.
+    Piece take() { return std::move(out_); }
+
+private:
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+
+    std::uint32_t e(std::uint32_t i) const { return 1 + 2 * (ring_.closed ? i % n_ : i); }
+    std::uint32_t f(std::uint32_t i) const { return 2 + 2 * (i % n_); }
+    std::uint32_t x20() const { return x20_; }
+    std::uint32_t x21() const { return x20_ + 1; }
+    std::uint32_t x22() const { return x20_ + 2; }
+    std::uint32_t x12() const { return x20_ + 3; }
+    std::uint32_t x02() const { return x20_ + 4; }
+    std::uint32_t lower() const { return x20_ + 5; }                    // (2,-1)
+    std::uint32_t left() const { return x20_ + 5 + type_.has_lower(); } // (-1,2)
+
+    HalfEdge add(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d)
+    {
+        std::uint32_t const face[] = {a, b, c, d};
+        out_.mesh.add_face(face);
+        return HalfEdge(out_.mesh.face_vertices.size() - 4);
+    }
+    void tag(std::uint32_t a, std::uint32_t b, float sharpness)
+    {
+        auto const is_same = [&](ControlMesh::Crease const& c) {
+            return ordered_edge(c.a, c.b) == ordered_edge(a, b);
+        };
+        auto& creases = out_.mesh.creases;
+        if (sharpness > 0 && std::none_of(creases.begin(), creases.end(), is_same))
+            creases.push_back({a, b, sharpness});
+    }
+    float outer(std::uint32_t i) const
+    {
+        std::size_t const edge = i % ring_.edge_count();
+        return type_.outer.empty() ? ring_.edge(edge) : type_.outer[edge];
+    }
+    // half_edge[i]: of face i, at the vertex.
+    template <class Edge>
+    void tag_ring(VertexRing const& ring, std::uint32_t vertex, Edge const& edge,
+                  std::vector<HalfEdge> const& half_edge)
+    {
+        if (ring.vertex > 0) out_.mesh.corners.push_back({vertex, ring.vertex});
+        std::size_t first_sharp = ring.edge_count();
+        for (std::size_t i = ring.edge_count(); i-- > 0;) {
+            tag(vertex, edge(i), ring.edge(i));
+            if (ring.edge(i) > 0) first_sharp = i;
+        }
+        if (ring.concave && first_sharp < half_edge.size())
+            out_.mesh.concave.push_back(half_edge[first_sharp]);
+    }
+
+    void add_corner()
+    {
+        std::vector<HalfEdge> ring;
+        for (std::uint32_t i = 0; i < n_; ++i) ring.push_back(add(0, e(i), f(i), e(i + 1)));
+        right_ = add(e(j_), x20(), x21(), f(j_)) + 1;
+        diagonal_ = add(f(j_), x21(), x22(), x12()) + 2;
+        upper_ = add(e(j_ + 1), f(j_), x12(), x02()) + 3;
+        if (type_.has_lower()) lower_ = add(f(j_ + n_ - 1), lower(), x20(), e(j_)) + 2;
+        if (type_.has_left()) left_ = add(f(j_ + 1), e(j_ + 1), x02(), left()) + 2;
+        tag_ring(
+            ring_, 0, [&](std::size_t i) { return e(std::uint32_t(i)); }, ring);
+        tag(e(j_), x20(), outer(j_));
+        tag(e(j_ + 1), x02(), outer(j_ + 1));
+    }
+
+    // What is left of the ring of a vertex beyond.
+    void add_beyond(int v, VertexRing const& ring)
+    {
+        int const n = ring.faces;
+        std::vector<std::uint32_t> edges(ring.edge_count(), kNone), faces(ring.faces, kNone);
+        std::vector<HalfEdge> half_edges(ring.faces, kNone);
+        auto const set = [&](auto& list, int i, std::uint32_t x) {
+            i += ring.position;
+            if (ring.closed) i = (i + n) % n;
+            if (i < 0 || std::size_t(i) >= list.size()) return;
+            auto& entry = list[std::size_t(i)];
+            if (entry != kNone) // closed, of two faces: its far ends are one
+                std::replace(out_.mesh.face_vertices.begin(), out_.mesh.face_vertices.end(), x,
+                             entry);
+            else
+                entry = x;
+        };
+        std::uint32_t center = 0;
+        switch (v) {
+        case PatchType::RightVertex:
+            center = x20();
+            set(edges, 0, x21());
+            set(edges, 1, e(j_));
+            set(faces, 0, f(j_)), set(half_edges, 0, right_);
+            if (!type_.has_lower()) break;
+            set(edges, 2, lower());
+            set(faces, 1, f(j_ + n_ - 1)), set(half_edges, 1, lower_);
+            break;
+        case PatchType::DiagonalVertex:
+            center = x22();
+            set(edges, 0, x12());
+            set(edges, 1, x21());
+            set(faces, 0, f(j_)), set(half_edges, 0, diagonal_);
+            break;
+        case PatchType::UpperVertex:
+            center = x02();
+            set(edges, 0, e(j_ + 1));
+            set(edges, 1, x12());
+            set(faces, 0, f(j_)), set(half_edges, 0, upper_);
+            if (!type_.has_left()) break;
+            set(edges, -1, left());
+            set(faces, -1, f(j_ + 1)), set(half_edges, -1, left_);
+            break;
+        }
+        for (std::size_t i = 0; i < edges.size(); ++i) { // as beyond_points() has them
+            if (edges[i] == kNone) edges[i] = vertices_++;
+            if (i < faces.size() && faces[i] == kNone) faces[i] = vertices_++;
+        }
+        for (std::size_t i = 0; i < faces.size(); ++i)
+            if (half_edges[i] == kNone)
+                half_edges[i] = add(center, edges[i], faces[i], edges[(i + 1) % edges.size()]);
+        tag_ring(
+            ring, center, [&](std::size_t i) { return edges[i]; }, half_edges);
+    }
+
+    // The edges that go on from semi-sharp ones off the patch, for the sharpness they lend.
+    void add_ends()
+    {
+        for (std::uint32_t i = 0; i < ring_.edge_count(); ++i) {
+            if (i == j_ || i == (j_ + 1) % ring_.edge_count()) continue;
+            if (ring_.edge(i) <= 0 || ring_.edge(i) >= kInfinitelySharp) continue;
+            std::uint32_t const far = vertices_++;
+            add(e(i), far, vertices_++, f(i));
+            add(f(i + n_ - 1), vertices_++, far, e(i));
+            tag(e(i), far, outer(i));
+        }
+    }
+
+    PatchType const& type_;
+    VertexRing const& ring_;
+    std::uint32_t n_, j_, x20_, vertices_;
+    // Half-edges at the vertices beyond, in the faces around the patch.
+    HalfEdge right_ = 0, diagonal_ = 0, upper_ = 0, lower_ = 0, left_ = 0;
+    Piece out_;
+};
+
+// The faces that touch the patch, after a step; by Chaikin's rule also those that touch the edge
+// points of sharp edges that leave it.
 Piece refined(Piece const& piece)
 {
     Topology const topology(piece.mesh);
@@ -86,10 +219,9 @@ Piece refined(Piece const& piece)
     ControlMesh const fine =
         catmull_clark_mesh(topology, sharpness, std::vector<glm::dvec3>(points.size()));
     std::vector<Place> places(points.size());
-    std::vector<char> of_patch(fine.faces(), 0);
+    std::vector<char> of_patch(fine.faces(), 0), is_kept(points.size(), 0);
     for (HalfEdge h = 0; h < fine.faces(); ++h) { // a face for each corner of the coarse ones
-        std::uint32_t const f = topology.face_of(h);
-        if (!piece.of_patch[f]) continue;
+        if (!piece.of_patch[topology.face_of(h)]) continue;
         of_patch[h] = 1;
         auto const at = [&](HalfEdge k) { return piece.places[topology.vertex_of(k)]; };
         auto const middle = [](Place a, Place b) {
@@ -97,21 +229,26 @@ Piece refined(Piece const& piece)
         };
         Place const a = at(h), b = at(topology.next(h)), c = at(topology.next(topology.next(h))),
                     d = at(topology.previous(h));
-        auto const quad = fine.face(h);
-        places[quad[0]] = a;
-        places[quad[1]] = middle(a, b);
-        places[quad[2]] = middle(a, c);
-        places[quad[3]] = middle(d, a);
+        Place const of_quad[] = {a, middle(a, b), middle(a, c), middle(d, a)};
+        for (std::size_t i = 0; i < 4; ++i) {
+            places[fine.face(h)[i]] = of_quad[i];
+            is_kept[fine.face(h)[i]] = 1;
+        }
     }
+    std::size_t const first_vertex_point = fine.positions.size() - piece.mesh.positions.size();
+    if (fine.rules.crease_method == CreaseMethod::Chaikin)
+        for (ControlMesh::Crease const& c : fine.creases) {
+            // One end is a vertex point, the other an edge point.
+            auto const [middle, end] = ordered_edge(c.a, c.b);
+            if (piece.places[end - first_vertex_point].on_patch()) is_kept[middle] = 1;
+        }
     Piece out;
-    out.mesh.boundary = fine.boundary;
-    out.mesh.crease_method = fine.crease_method;
+    out.mesh.rules = fine.rules;
     constexpr std::uint32_t kLeftOut = 0xffffffffu;
-    std::vector<std::uint32_t> number(points.size(), kLeftOut);
+    std::vector<std::uint32_t> number(points.size(), kLeftOut), face_number(fine.faces(), kLeftOut);
     for (std::uint32_t f = 0; f < fine.faces(); ++f) {
         auto const face = fine.face(f);
-        if (std::none_of(face.begin(), face.end(),
-                         [&](std::uint32_t v) { return places[v].on_patch(); }))
+        if (std::none_of(face.begin(), face.end(), [&](std::uint32_t v) { return is_kept[v]; }))
             continue;
         std::uint32_t quad[4];
         for (std::size_t i = 0; i < 4; ++i) {
@@ -123,6 +260,7 @@ Piece refined(Piece const& piece)
             }
             quad[i] = v;
         }
+        face_number[f] = std::uint32_t(out.mesh.faces());
         out.mesh.add_face(quad);
         out.of_patch.push_back(of_patch[f]);
     }
@@ -135,45 +273,34 @@ Piece refined(Piece const& piece)
         c.vertex = number[c.vertex];
         if (c.vertex != kLeftOut) out.mesh.corners.push_back(c);
     }
-    // Vertex points are last, in the order of the vertices.
-    out.corner = number[fine.positions.size() - piece.points.size() + piece.corner];
+    for (HalfEdge h : fine.concave)
+        if (std::uint32_t const f = face_number[h / 4]; f != kLeftOut)
+            out.mesh.concave.push_back(4 * f + h % 4);
+    out.corner = number[first_vertex_point + piece.corner];
     return out;
 }
 
-// A vertex of the patch, in the order of a closed ring from the edge that is first
-// counter-clockwise on the patch's side on; open rings as they are.
+// A vertex of the patch.
 struct Around {
-    Ring<X> ring;
+    Ring<X> ring; // as Topology has it
     RingSharpness sharp;
     std::size_t position; // of a face of the patch
-    int turns = 0;        // the edge before that face runs along u turned by so many right angles
+    int turns;            // the edge before that face runs along u, turned by so many right angles
 };
 
 Around around(Piece const& piece, Topology const& t, Sharpness const& sharpness, std::uint32_t v)
 {
     auto const faces = t.ring(v);
-    std::size_t position = 0;
-    while (!piece.of_patch[t.face_of(faces[position])]) ++position;
-    bool const closed = !t.is_boundary(v);
-    std::size_t const n = faces.size(), first = closed ? position : 0;
-    Around out;
-    out.position = closed ? 0 : position;
     auto const& x = piece.points;
-    out.ring.vertex = x[v];
-    for (std::size_t j = 0; j < n; ++j) {
-        HalfEdge const h = faces[(first + j) % n];
+    Around out{{x[v], {}, {}}, {}, 0, 0};
+    while (!piece.of_patch[t.face_of(faces[out.position])]) ++out.position;
+    for (HalfEdge h : faces) {
         out.ring.edge.push_back(x[t.vertex_of(t.next(h))]);
         out.ring.face.push_back(x[t.vertex_of(t.next(t.next(h)))]);
     }
-    if (!closed) out.ring.edge.push_back(x[t.vertex_of(t.previous(faces.back()))]);
+    if (t.is_boundary(v)) out.ring.edge.push_back(x[t.vertex_of(t.previous(faces.back()))]);
     sharpness.around(v, out.sharp);
-    auto const rotate = [&](auto& list) {
-        if (!list.empty())
-            std::rotate(list.begin(), list.begin() + std::ptrdiff_t(first), list.end());
-    };
-    rotate(out.sharp.edge);
-    rotate(out.sharp.far_end);
-    Place const a = piece.places[v], b = piece.places[t.vertex_of(t.next(faces[position]))];
+    Place const a = piece.places[v], b = piece.places[t.vertex_of(t.next(faces[out.position]))];
     out.turns = b.i > a.i ? 0 : b.j > a.j ? 1 : b.i < a.i ? 2 : 3;
     return out;
 }
@@ -183,34 +310,29 @@ struct Sample {
 };
 
 // Derivatives at a regular vertex of a mesh of cells of size h, from its ring; on an infinitely
-// sharp line those of the side of face `position`.
+// sharp line those of the patch's side.
 void set_derivatives(Around const& a, double h, Sample& out)
 {
-    Ring<X> const& r = a.ring;
-    std::size_t const p = a.position;
+    std::size_t const edges = a.ring.edge.size(), faces = a.ring.faces(), p = a.position;
+    auto const edge = [&](std::size_t i) -> X const& { return a.ring.edge[(p + i) % edges]; };
+    auto const face = [&](std::size_t i) -> X const& { return a.ring.face[(p + i) % faces]; };
+    auto const is_sharp = [&](std::size_t i) { return a.sharp.edge[(p + i) % edges] > 0; };
     X along, left; // in the direction of the edge before the face, and to its left
-    auto const sharp = [&](std::size_t edge) { return a.sharp.edge[edge] > 0; };
-    if (!a.sharp.open &&
-        std::none_of(a.sharp.edge.begin(), a.sharp.edge.end(), [](float s) { return s > 0; })) {
-        assert(r.faces() == 4);
-        along =
-            (4.0 * (r.edge[0] - r.edge[2]) + (r.face[0] - r.face[1]) + (r.face[3] - r.face[2])) /
-            (12 * h);
-        left = (4.0 * (r.edge[1] - r.edge[3]) + (r.face[0] - r.face[3]) + (r.face[1] - r.face[2])) /
-               (12 * h);
+    if (a.sharp.rule() == VertexRule::Smooth) {
+        assert(faces == 4 && !a.sharp.open);
+        along = (4.0 * (edge(0) - edge(2)) + (face(0) - face(1)) + (face(3) - face(2))) / (12 * h);
+        left = (4.0 * (edge(1) - edge(3)) + (face(0) - face(3)) + (face(1) - face(2))) / (12 * h);
     } else {
-        // The two faces of the side: `first` and the one after it, from a sharp edge to another.
-        std::size_t const edges = r.edge.size(), faces = r.faces();
-        std::size_t const first = sharp(p) ? p : (p + faces - 1) % faces;
-        X const &start = r.edge[first % edges], &middle = r.edge[(first + 1) % edges],
-                &end = r.edge[(first + 2) % edges], &f0 = r.face[first],
-                &f1 = r.face[(first + 1) % faces];
+        // The side's two faces: `first` and the one after it, from a sharp edge to the other.
+        std::size_t const first = is_sharp(0) ? 0 : faces - 1;
+        X const &start = edge(is_sharp(0) ? 0 : edges - 1), &middle = edge(is_sharp(0) ? 1 : 0),
+                &end = edge(is_sharp(0) ? 2 : 1);
         X const forward = (start - end) / (2 * h);
-        X const inward = (f0 + 4.0 * middle + f1 - start - 4.0 * r.vertex - end) / (6 * h);
-        if (first == p)
-            along = forward, left = inward;
-        else
-            along = inward, left = -forward;
+        X const inward =
+            (face(first) + 4.0 * middle + face(first + 1) - start - 4.0 * a.ring.vertex - end) /
+            (6 * h);
+        along = is_sharp(0) ? forward : inward;
+        left = is_sharp(0) ? inward : X(-forward);
     }
     switch (a.turns) {
     case 0:
@@ -289,14 +411,14 @@ void set_directions(Around const& a, Limits<CatmullClark>& limits, Sample& out)
 
 BasisTables make_basis_tables(PatchType const& type)
 {
-    Piece piece = control_piece(type);
+    Piece piece = PieceBuilder(type).take();
     for (int s = 0; s < kTableSteps; ++s) piece = refined(piece);
     Topology const topology(piece.mesh);
     Sharpness const sharpness(topology);
     Limits<CatmullClark> limits;
     BasisTables out;
-    out.points = type.points();
-    auto const size = std::size_t(out.points) * kTableSamples;
+    std::size_t const all = piece.points[0].size();
+    auto const size = all * kTableSamples;
     out.position.resize(size), out.du.resize(size), out.dv.resize(size);
     for (std::uint32_t v = 0; v < piece.points.size(); ++v) {
         Place const place = piece.places[v];
@@ -315,12 +437,28 @@ BasisTables make_basis_tables(PatchType const& type)
         else
             set_derivatives(a, h, s);
         std::size_t const at = std::size_t(place.j) * kTableSide + std::size_t(place.i);
-        for (std::size_t k = 0; k < std::size_t(out.points); ++k) {
+        for (std::size_t k = 0; k < all; ++k) {
             out.position[k * kTableSamples + at] = s.position[k];
             out.du[k * kTableSamples + at] = s.du[k];
             out.dv[k * kTableSamples + at] = s.dv[k];
         }
     }
+    // Of the rings beyond only points that count.
+    out.points = type.points();
+    for (auto k = std::size_t(out.points); k < all; ++k) {
+        auto const first = std::ptrdiff_t(k * kTableSamples);
+        auto const counts = [&](std::vector<double> const& table) {
+            return std::any_of(table.begin() + first, table.begin() + first + kTableSamples,
+                               [](double w) { return w != 0; });
+        };
+        if (!counts(out.position) && !counts(out.du) && !counts(out.dv)) continue;
+        auto const to = std::ptrdiff_t(out.points++) * kTableSamples;
+        for (auto* table : {&out.position, &out.du, &out.dv})
+            std::copy_n(table->begin() + first, kTableSamples, table->begin() + to);
+        out.beyond.push_back(std::uint16_t(k - std::size_t(type.points())));
+    }
+    for (auto* table : {&out.position, &out.du, &out.dv})
+        table->resize(std::size_t(out.points) * kTableSamples);
     return out;
 }
 
