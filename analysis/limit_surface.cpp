@@ -52,8 +52,8 @@ Ring<Vec> ring_after_step(Topology const& t, EdgeNumbers const& edges, std::vect
 
 // Of a side of a vertex. Where the tangents are parallel, as two sharp edges in one line are, the
 // faces decide; and at a corner whose faces turn by more than half a circle they say which side of
-// the plane of its sharp edges is outside, unless Biermann's rules have. By those the edges of a face
-// alone on its side may lie in one line too.
+// the plane of its sharp edges is outside, unless Biermann's rules have. By those the edges of a
+// face alone on its side may lie in one line too.
 Vec side_normal(Ring<Vec> const& ring, RingSharpness const& sharp, VertexRule rule,
                 VertexLimit<Vec>::Side const& side)
 {

@@ -8,8 +8,8 @@
 
 namespace tessemu {
 
-/// Throws MeshError that names the first edge or vertex whose sharpness is finite, which these rules
-/// do not know. A crease on the boundary counts as infinite, as everywhere.
+/// Throws MeshError that names the first edge or vertex whose sharpness is finite, which these
+/// rules do not know. A crease on the boundary counts as infinite, as everywhere.
 void check_sharpness_for_biermann(ControlMesh const& mesh);
 
 /// Corners whose faces surround more than half a circle.

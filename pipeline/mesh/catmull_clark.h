@@ -84,8 +84,8 @@ struct CatmullClark {
         out += (to_vertex * (lambda - 0.5) + to_end) / determinant * v;
         return out;
     }
-    /// sum 4 sin(t_j) e_j + (sin(t_j) + sin(t_(j+1))) f_j, j = 0 to k - 1, t_j = j pi a/b + quarters
-    /// pi/2 (docs/math/subdivision.md, 5.3)
+    /// sum 4 sin(t_j) e_j + (sin(t_j) + sin(t_(j+1))) f_j, j = 0 to k - 1,
+    /// t_j = j pi a/b + quarters pi/2 (docs/math/subdivision.md, 5.3)
     template <class X, class Edge, class Face>
     static X turning(int k, int a, int b, int quarters, X const& v, Edge const& edge,
                      Face const& face)

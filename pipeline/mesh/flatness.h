@@ -5,29 +5,34 @@
 //
 // Beyond those of ring.h and limit.h, Masks has
 //
-//     mode_on_face(lambda, cos_half_theta)  what face i has of an eigenvector of lambda, where edge
-//                                           j has cos(j theta) or sin(j theta) and face i this times
-//                                           that of (i + 1/2) theta
-//     concave_eigenvalue(k)                 the largest but 1 of a concave sector of k faces
+//     mode_on_face(lambda, cos_half_theta)  of an eigenvector of lambda: where edge j has the
+//                                cosine or sine of j theta, face i has this times that of
+//                                (i + 1/2) theta
+//     concave_eigenvalue(k)      the largest but 1 of a concave sector of k faces
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "pipeline/mesh/limit.h"
 #include "pipeline/mesh/limit_constants.h"
+#include "pipeline/mesh/weighted_sum.h"
 
 #include <algorithm>
+#include <array>
 #include <type_traits>
 
 namespace tessemu {
 
 /// How the new ring of a vertex is flattened. Points are numbered as in Ring::point.
 struct FlatRing {
+    struct Point {
+        std::size_t number;
+        double x1, x2;
+    };
     struct Sector {
         double flatness;
-        std::array<RingWeights, 3> left;  ///< a_i by weights of the ring's points
-        std::array<RingWeights, 2> modes; ///< x1 and x2 by point
-        std::vector<std::size_t> points;  ///< those that move
+        std::array<std::vector<WeightedSum::Term>, 3> left; ///< a_i by the ring's points
+        std::vector<Point> points;                          ///< those that move
     };
     std::vector<Sector> sectors; ///< no point moves in two of them
 
@@ -37,21 +42,19 @@ struct FlatRing {
     {
         using X = std::decay_t<decltype(at(0))>;
         for (Sector const& s : sectors) {
-            auto const apply = [&](RingWeights const& w) {
-                std::size_t i = 0;
-                while (w[i] == 0) ++i; // as a mask it is not zero
-                X sum = at(i) * w[i];
-                while (++i < w.size())
-                    if (w[i] != 0) sum += at(i) * w[i];
+            auto const apply = [&](std::vector<WeightedSum::Term> const& terms) {
+                X sum = at(terms[0].point) * terms[0].weight;
+                for (std::size_t i = 1; i < terms.size(); ++i)
+                    sum += at(terms[i].point) * terms[i].weight;
                 return sum;
             };
             X const a[3] = {apply(s.left[0]), apply(s.left[1]), apply(s.left[2])};
-            for (std::size_t i : s.points) {
+            for (Point const& p : s.points) {
                 X move = a[0] * s.flatness;
-                move += a[1] * (s.flatness * s.modes[0][i]);
-                move += a[2] * (s.flatness * s.modes[1][i]);
-                move += at(i) * -s.flatness;
-                by(i, std::move(move));
+                move += a[1] * (s.flatness * p.x1);
+                move += a[2] * (s.flatness * p.x2);
+                move += at(p.number) * -s.flatness;
+                by(p.number, std::move(move));
             }
         }
     }
@@ -87,15 +90,14 @@ template <class Masks>
 FlatRing flat_ring(RingSharpness const& sharp, std::size_t n, Limits<Masks>& limits)
 {
     std::size_t const e = sharp.edge.size(), size = 1 + e + n;
-    Ring<RingWeights> unit{RingWeights(0.0, size),
-                           std::vector<RingWeights>(e, RingWeights(0.0, size)),
-                           std::vector<RingWeights>(n, RingWeights(0.0, size))};
-    for (std::size_t i = 0; i < size; ++i) unit.point(i)[i] = 1;
+    Ring<WeightedSum> ring{{}, std::vector<WeightedSum>(e), std::vector<WeightedSum>(n)};
+    for (std::uint32_t i = 0; i < size; ++i) ring.point(i) = WeightedSum(i);
     RingSharpness alone = sharp; // a step ago: nothing else is sharp now
     alone.far_cos_theta.clear();
-    VertexLimit<RingWeights> const limit = limits.of(unit, alone);
+    VertexLimit<WeightedSum> const limit = limits.of(std::move(ring), std::move(alone));
     VertexRule const rule = sharp.rule();
     FlatRing out;
+    std::vector<FlatRing::Point> x(size, FlatRing::Point{}); // of the sector in turn
     bool has_curve = rule == VertexRule::Crease;
     std::vector<RingSector> const sectors = sharp.sectors();
     for (std::size_t i = 0; i < sectors.size(); ++i) {
@@ -109,33 +111,42 @@ FlatRing flat_ring(RingSharpness const& sharp, std::size_t n, Limits<Masks>& lim
         if (flat.flatness == 0 || !has_plane) continue;
         double const lambda = rule == VertexRule::Smooth ? loop09_lambda(int(n)) : 0.5,
                      on_face = Masks::mode_on_face(lambda, cos_pi(a, 2 * b));
-        flat.modes[0] = flat.modes[1] = RingWeights(0.0, size);
-        auto const set = [&](std::size_t point, int half_turns, double weight) {
-            flat.modes[0][point] = weight * cos_pi(half_turns * a, 2 * b);
-            flat.modes[1][point] = weight * sin_pi(half_turns * a, 2 * b);
-        };
         std::size_t const edges = s.closed ? s.faces : s.faces + 1;
-        bool const is_corner = rule == VertexRule::Corner;
-        if (!is_corner && (s.closed || has_curve)) flat.points.push_back(0);
+        bool const is_corner = rule == VertexRule::Corner,
+                   moves_all = !is_corner && (s.closed || has_curve);
+        std::vector<FlatRing::Point> all;
+        auto const add = [&](std::size_t point, std::size_t half_turns, double weight, bool moves) {
+            all.push_back({point, weight * cos_pi(int(half_turns) * a, 2 * b),
+                           weight * sin_pi(int(half_turns) * a, 2 * b)});
+            if (moves) flat.points.push_back(all.back());
+            x[point] = all.back();
+        };
+        add(0, 0, 0, moves_all);
         for (std::size_t k = 0; k < edges; ++k) {
             std::size_t const j = (s.first + k) % e;
-            set(1 + j, int(2 * k), 1);
-            bool const is_inside = !(sharp.edge[j] > 0);
-            if (is_inside || (!is_corner && (s.closed || has_curve))) flat.points.push_back(1 + j);
+            add(1 + j, 2 * k, 1, moves_all || !(sharp.edge[j] > 0));
         }
-        for (std::size_t k = 0; k < s.faces; ++k) {
-            std::size_t const point = 1 + e + (s.first + k) % n;
-            set(point, int(2 * k + 1), on_face);
-            flat.points.push_back(point);
-        }
+        for (std::size_t k = 0; k < s.faces; ++k)
+            add(1 + e + (s.first + k) % n, 2 * k + 1, on_face, true);
         if (!s.closed) has_curve = false; // moved with the first side
         // Any two vectors that span the left eigenspace will do: their multiples that are dual.
-        auto const& [t1, t2] = limit.sides[i].tangents;
-        double const m[2][2] = {{(t1 * flat.modes[0]).sum(), (t1 * flat.modes[1]).sum()},
-                                {(t2 * flat.modes[0]).sum(), (t2 * flat.modes[1]).sum()}};
+        double m[2][2] = {};
+        for (int t : {0, 1})
+            for (WeightedSum::Term const& term : limit.sides[i].tangents[t].terms()) {
+                m[t][0] += term.weight * x[term.point].x1;
+                m[t][1] += term.weight * x[term.point].x2;
+            }
+        for (FlatRing::Point const& p : all) x[p.number] = {};
         double const determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-        flat.left = {limit.position, (m[1][1] * t1 - m[0][1] * t2) / determinant,
-                     (m[0][0] * t2 - m[1][0] * t1) / determinant};
+        auto const& [t1, t2] = limit.sides[i].tangents;
+        auto const not_zero = [](WeightedSum const& sum) {
+            auto terms = sum.terms();
+            std::erase_if(terms, [](WeightedSum::Term const& t) { return t.weight == 0; });
+            return terms;
+        };
+        flat.left = {not_zero(limit.position),
+                     not_zero((m[1][1] * t1 - m[0][1] * t2) / determinant),
+                     not_zero((m[0][0] * t2 - m[1][0] * t1) / determinant)};
         out.sectors.push_back(std::move(flat));
     }
     return out;

@@ -130,8 +130,8 @@ DartMasks dart_masks(std::size_t n, SectorRules rules = SectorRules::OpenSubdiv)
 template <class Masks> class Limits {
 public:
     /// \param ring   on a mesh of quads
-    /// \param sharp  of the same vertex; while finite sharpness is left the ring is refined further,
-    ///               and where an edge leans away from the vertex
+    /// \param sharp  of the same vertex; while finite sharpness is left, and where an edge leans
+    ///               away from the vertex, the ring is refined further
     /// By Biermann's rules nothing else that is flattened may share a face with the vertex.
     template <class X> VertexLimit<X> of(Ring<X> ring, RingSharpness sharp)
     {

@@ -9,8 +9,8 @@
 //     vertex(n, v, edges, faces)  of a smooth vertex, the sums of its edges' far ends and of its
 //                               faces' points
 //     crease_edge(a, b), crease_vertex(a, v, b)  along a crease or boundary
-//     lean(cos_theta)           how far a smooth edge's point moves to its sharp end, of the edge, by
-//                               Biermann's rules
+//     lean(cos_theta)           what part of a smooth edge its point moves towards its sharp end by
+//                               Biermann's rules (docs/math/subdivision.md, 5.2)
 //
 // Points are of any type X that can be added, and multiplied and divided by a number: positions,
 // or rows of weights. A triangle's third vertex is 3 F - a - b of its mean F, so Loop's edge points

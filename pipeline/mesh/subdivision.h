@@ -1,7 +1,7 @@
 // Subdivision by any scheme's masks: new points of a mesh, and of one vertex's ring as often as its
 // limit needs.
 //
-// Masks: see ring.h, and limit.h for Biermann's rules, which flatten (docs/math/subdivision.md, 5.2).
+// Masks: see ring.h; limit.h and flatness.h for Biermann's rules (docs/math/subdivision.md, 5.2).
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -130,8 +130,8 @@ std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpne
 
 /// The ring of the same vertex after a step: it depends on nothing further away.
 ///
-/// By Biermann's rules, on a ring as a step leaves it: where nothing else that is flattened shares a
-/// face with the vertex.
+/// By Biermann's rules, on a ring as a step leaves it: where nothing else that is flattened shares
+/// a face with the vertex.
 template <class Masks, class X>
 Ring<X> refined_ring(Ring<X> const& ring, RingSharpness const& sharp)
 {

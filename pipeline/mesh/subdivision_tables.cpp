@@ -3,61 +3,16 @@
 
 #include "emu/compute_shader.h"
 #include "pipeline/mesh/catmull_clark.h"
+#include "pipeline/mesh/weighted_sum.h"
 
-#include <algorithm>
 #include <map>
 
 namespace tessemu {
 
 namespace {
 
-// A point as a sum of weighted points of the buffer: what the masks blend where numbers will not
-// do.
-class Sum {
-public:
-    Sum() = default;
-    explicit Sum(std::uint32_t point) : terms_{{point, 1}} {}
-
-    struct Term {
-        std::uint32_t point;
-        double weight;
-    };
-    /// By ascending point, each once.
-    std::vector<Term> terms() const
-    {
-        std::vector<Term> sorted = terms_, out;
-        std::stable_sort(sorted.begin(), sorted.end(),
-                         [](Term const& a, Term const& b) { return a.point < b.point; });
-        for (Term const& t : sorted)
-            if (!out.empty() && out.back().point == t.point)
-                out.back().weight += t.weight;
-            else
-                out.push_back(t);
-        return out;
-    }
-
-    Sum& operator+=(Sum const& o)
-    {
-        terms_.insert(terms_.end(), o.terms_.begin(), o.terms_.end());
-        return *this;
-    }
-    Sum& operator*=(double s)
-    {
-        for (Term& t : terms_) t.weight *= s;
-        return *this;
-    }
-    friend Sum operator+(Sum a, Sum const& b) { return a += b; }
-    friend Sum operator*(Sum a, double s) { return a *= s; }
-    friend Sum operator*(double s, Sum a) { return a *= s; }
-    friend Sum operator/(Sum a, double s)
-    {
-        for (Term& t : a.terms_) t.weight /= s;
-        return a;
-    }
-
-private:
-    std::vector<Term> terms_;
-};
+// What the masks blend where numbers will not do: points of the buffer.
+using Sum = WeightedSum;
 
 class Builder {
 public:
@@ -168,13 +123,13 @@ public:
         SubdivisionTables::Blended& b = out_.blended;
         for (auto const& [target, sum] : blended_) {
             Sum all;
-            for (Sum::Term const& t : sum.terms())
+            for (WeightedSum::Term const& t : sum.terms())
                 all += (is_face_point(t.point) && blended_.count(t.point)
                             ? new_point_of_kernels(t.point)
                             : Sum(t.point)) *
                        t.weight;
             b.target.push_back(target);
-            for (Sum::Term const& t : all.terms()) {
+            for (WeightedSum::Term const& t : all.terms()) {
                 b.points.push_back(t.point);
                 b.weights.push_back(float(t.weight));
             }

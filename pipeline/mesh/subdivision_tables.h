@@ -11,9 +11,9 @@
 // A boundary edge, and any edge that stays sharp, has both its ends twice: their middle. A vertex on
 // a boundary or between two sharp edges has valence 1 and its two neighbours along them, one that
 // stays where it is valence 0 and none: these are LOOP10's encodings, and sharp tags fit them. What
-// does not fit is `blended`, as sums of weighted points: points between two rules where a sharpness ends in
-// this step, edge points at triangles to be smoothed, and by Biermann's rules those that lean to an
-// end and those that are flattened.
+// does not fit is `blended`, as sums of weighted points: points between two rules where a sharpness
+// ends in this step, edge points at triangles to be smoothed, and by Biermann's rules those that lean
+// to an end and those that are flattened.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

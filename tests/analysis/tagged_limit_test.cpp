@@ -296,10 +296,9 @@ TEST(TaggedLimit, DoesNotDependOnTheLevel)
     EXPECT_GT(normals, 10000u);
 }
 
-// By Biermann's rules too, with every flatness, and at vertices with 5 faces and more as well: there
-// the tangents are halved whatever the tags. But not on a crease beside one face, which has no second
-// tangent. Where a step flattens, as above, weights add up to 5 in
-// absolute value, and rounding grows with them.
+// By Biermann's rules too, with every flatness, and at vertices with 5 faces and more as well, whose
+// tangents are halved whatever the tags; but not on a crease beside one face, which has no second
+// tangent. Where a step flattens, weights add up to 5 in absolute value, and rounding with them.
 TEST(TaggedLimit, OfBiermannsRulesDoesNotDependOnTheLevelEither)
 {
     std::size_t points = 0, normals = 0, concave = 0;

@@ -139,7 +139,7 @@ template <class X> Ring<X> ring_of(Case const& c, X const& zero)
 }
 
 // What the rules are for: cos(j theta) and sin(j theta) on edges, 2 cos(theta/2) times those of
-// (j + 1/2) theta on faces, are halved by a step. Five sums of values below 2: eight units of 2^-52.
+// (j + 1/2) theta on faces, are halved by a step. Five sums of values below 2: 8 units of 2^-52.
 TEST(BiermannRules, AnyTaggedSectorHasOneHalfTwice)
 {
     std::size_t sectors = 0;
@@ -250,10 +250,10 @@ TEST(BiermannRules, AFlatnessOfOneFlattensInOneStep)
     EXPECT_GT(flat, 300u);
 }
 
-// Explicit steps against the masks. Of up to 3 faces the second eigenvalue is at most 0.4521 (a convex
-// corner's sine mode: the largest of [[gamma + c/8, h/8], [h/2, 1/4]], c = cos(pi/3)): ten steps
-// leave 4e-4 of a ring of size 2 for the position, thirty (0.4521/0.5)^30 = 0.05 for the plane. A tip
-// is a cone: its ring has no plane to tend to.
+// Explicit steps against the masks. Of up to 3 faces the second eigenvalue is at most 0.4521 (of a
+// convex corner's sine mode, [[gamma + c/8, h/8], [h/2, 1/4]] with c = cos(pi/3)): ten steps leave
+// 4e-4 of a ring of size 2 for the position, thirty (0.4521/0.5)^30 = 0.05 for the plane. A tip is a
+// cone: its ring has no plane to tend to.
 TEST(BiermannRules, StepsTendToTheLimitOfTheMasks)
 {
     std::mt19937 random(11);
@@ -398,8 +398,8 @@ TEST(BiermannRules, ARingIsRefinedAsItsMeshIs)
 }
 
 // A blended row of m terms whose weights sum to W in absolute value rounds each weight, product and
-// sum: 3 m u W M with u = 2^-24 and M the largest coordinate that it reads, and multiplies the errors
-// that it reads by W. Other points: (2 n + 4) u M (subdivision_test.cpp).
+// sum: 3 m u W M with u = 2^-24 and M the largest coordinate that it reads, and multiplies the
+// errors that it reads by W. Other points: (2 n + 4) u M (subdivision_test.cpp).
 TEST(BiermannRules, KernelsAgreeWithTheMasksWithinRounding)
 {
     std::size_t blended_faces = 0;
