@@ -376,6 +376,9 @@ public:
         CommandList list = patches_.commands(settings);
         list.for_each_surface_draw([&](Draw& d) {
             DomainShader& shader = d.pipeline.domain_shader;
+            if (!shader)
+                throw Error("normals of the displaced surface are differences between any points of "
+                            "a patch, and the scheme has points on a grid alone");
             shader = {
                 std::make_shared<DisplacedNormalProgram>(
                     shader, d.patches, Setting{mesh().base(), *settings.displacement, shared_}),
@@ -384,6 +387,7 @@ public:
         return list;
     }
     std::vector<PatchCount> patch_counts() const override { return patches_.patch_counts(); }
+    bool has_creases() const override { return patches_.has_creases(); }
 
 private:
     PatchMesh const& patches_;

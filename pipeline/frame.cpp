@@ -112,6 +112,7 @@ PixelShader make_view(Draw const& draw, FrameSettings const& settings)
         PatchPixelShader s;
         s.color = color_of(draw.kind.patch_class);
         s.light = as_array(light);
+        if (draw.grid) s.brightness = 0.94f, s.step = 0; // SV_PrimitiveID is a triangle's
         return on_surface(s, settings);
     }
     default: {
@@ -133,6 +134,16 @@ std::array<float, 3> color_of(PatchClass patch_class)
         return {0.66f, 0.54f, 0.86f};
     case PatchClass::Triangle:
         return {0.44f, 0.80f, 0.48f};
+    case PatchClass::Crease:
+        return {0.42f, 0.68f, 0.92f};
+    case PatchClass::Dart:
+        return {0.96f, 0.56f, 0.24f};
+    case PatchClass::ConvexCorner:
+        return {0.90f, 0.36f, 0.36f};
+    case PatchClass::ConcaveCorner:
+        return {0.72f, 0.30f, 0.62f};
+    case PatchClass::SemiSharp:
+        return {0.36f, 0.78f, 0.72f};
     default:
         return {0.88f, 0.45f, 0.50f};
     }
@@ -209,9 +220,10 @@ void add_wires(CommandList& list, FrameSettings const& s, RasterizerState lines)
 // A colour for each patch, by its valence.
 void show_valences(CommandList& list, RefinedMesh const& mesh, FrameSettings const& s)
 {
-    if (s.direct3d10)
+    if (!list.primitives_are_patches())
         throw Error("the valence view tells patches apart by SV_PrimitiveID, which the Direct3D 10 "
-                    "path has of triangles; 'patches' is a view that it has");
+                    "path, and a scheme without a tessellator, has of triangles; 'patches' is a "
+                    "view that they have");
     PatchValences const valences(mesh);
     PatchColorPixelShader view;
     view.light = as_array(key_light(s.camera));

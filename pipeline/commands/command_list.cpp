@@ -140,6 +140,13 @@ std::size_t CommandList::patches() const
     return n;
 }
 
+bool CommandList::primitives_are_patches() const
+{
+    bool all = true;
+    for_each_surface_draw([&](Draw const& d) { all = all && !d.grid; });
+    return all;
+}
+
 SurfacePatch::SurfacePatch(Draw const& draw, ShadedPatch const& patch)
     : draw_(&draw),
       patch_(patch),

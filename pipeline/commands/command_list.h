@@ -24,7 +24,18 @@
 namespace tessemu {
 
 /// What a patch is, as pictures and figures tell patches apart.
-enum class PatchClass { RegularQuad, IrregularQuad, Triangle, Other };
+enum class PatchClass {
+    RegularQuad,
+    IrregularQuad,
+    Triangle,
+    Other,
+    // At tags, of schemes that honour them.
+    Crease, ///< or boundary
+    Dart,
+    ConvexCorner,
+    ConcaveCorner,
+    SemiSharp,
+};
 
 /// Patches of one shape: one domain shader, one number of control points.
 struct PatchKind {
@@ -104,6 +115,9 @@ struct CommandList {
     }
     /// Of all draws of the surface.
     std::size_t patches() const;
+    /// Whether SV_PrimitiveID tells a patch in all draws of the surface: instances have it of their
+    /// triangles.
+    bool primitives_are_patches() const;
 };
 
 /// A point of the surface in object space.
