@@ -136,7 +136,7 @@ Match match_of(Joint const& joint, PatchTypeTables const& ta, PatchTypeTables co
 {
     PointsOfType const a(ta), b(tb);
     Match out(ta, tb);
-    VertexRing const &ca = ta.type.corner, &cb = tb.type.corner;
+    VertexRing const& ca = ta.type.corner;
     if (joint.mirrored) {
         // (column, row) to (row, column); the ring the other way round.
         int const n = ca.faces, first = ca.closed ? 1 : n;

@@ -23,7 +23,7 @@ namespace tessemu {
 /// A free choice that a user may set: a number within limits, or one of some words.
 struct SchemeParameter {
     std::string name, meaning;
-    double default_value = 0;
+    std::optional<double> default_value = 0.0; ///< none: has a value only where one is given
     double min = -std::numeric_limits<double>::infinity();
     double max = std::numeric_limits<double>::infinity();
     std::vector<std::string> words = {}; ///< not empty: one of these, the first by default
@@ -35,6 +35,13 @@ public:
     using Value = std::variant<double, std::string>;
 
     double number(std::string const& name) const { return std::get<double>(values_.at(name)); }
+    /// Of a number that has no default.
+    std::optional<double> number_if_given(std::string const& name) const
+    {
+        auto const found = values_.find(name);
+        if (found == values_.end()) return {};
+        return std::get<double>(found->second);
+    }
     std::string const& word(std::string const& name) const
     {
         return std::get<std::string>(values_.at(name));
@@ -70,6 +77,9 @@ struct SchemeInfo {
     /// Parameters under which patches that meet give their shared points equal bits, where the
     /// defaults do not promise it: those of a scheme that draws as its paper does.
     std::vector<std::pair<std::string, std::string>> watertight_with = {};
+    /// Whether hull shader, tessellator and domain shader make its points. Otherwise it takes one
+    /// number of segments, no partitioning, no factors by edge and no Direct3D 10 path.
+    bool tessellator = true;
     /// Why it has no mean curvature to show; empty: it has (shaders_cpp/curvature.h).
     std::string no_curvature = "its domain shaders give no second derivatives";
 };

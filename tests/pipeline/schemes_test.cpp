@@ -89,8 +89,8 @@ TEST(Schemes, NamesAreUniqueAndFound)
             EXPECT_TRUE(parameters.insert(p.name).second) << info.name << ": " << p.name;
             EXPECT_FALSE(p.meaning.empty()) << info.name << ": " << p.name;
             if (!p.words.empty()) continue;
-            EXPECT_GE(p.default_value, p.min) << info.name << ": " << p.name;
-            EXPECT_LE(p.default_value, p.max) << info.name << ": " << p.name;
+            EXPECT_GE(p.default_value.value_or(p.min), p.min) << info.name << ": " << p.name;
+            EXPECT_LE(p.default_value.value_or(p.max), p.max) << info.name << ": " << p.name;
         }
     }
     try {
