@@ -282,7 +282,8 @@ private:
     Source fetch(int id)
     {
         Node const& n = node(id);
-        auto const [x, y] = address(source(n.a), source(n.b));
+        Source const column = source(n.a), row = source(n.b);
+        auto const [x, y] = address(column, row);
         Instruction tex{Kind::Texel, new_vector(), {}};
         tex.in[0] = {x, y};
         tex.texture = n.bits;

@@ -13,10 +13,10 @@
 // and the turns of a loop stay apart. Where it makes less code, three components are the most, or
 // two: sums of three numbers side by side must not be torn into four and two.
 //
-// A product that feeds one sum alone becomes a MAD, a sum of three or four products of two registers
-// DP3 or DP4, a division RCP and MUL, 1 / sqrt(x) RSQ, sqrt(x) RSQ and RCP; negation and absolute
-// value are free. A fetch writes component k of a register with channel k, and has two components of
-// one register as its address; MOV brings them together.
+// A product that feeds one sum alone becomes a MAD, a sum of three or four products of two
+// registers DP3 or DP4, a division RCP and MUL, 1 / sqrt(x) RSQ, sqrt(x) RSQ and RCP; negation and
+// absolute value are free. A fetch writes component k of a register with channel k, and has two
+// components of one register as its address; MOV brings them together.
 //
 // Left out: that an instruction reads at most one constant and one input register, and that
 // results go to output registers, which instructions can write as well as temporary ones.
@@ -47,8 +47,8 @@ struct VectorCode {
     std::uint64_t instructions() const { return add + mul + mad + tex + other; }
 };
 
-/// \param results  of the recording `graph`, or constants, which become nodes of it; what they do not
-///                 need is left out. One that no operation made costs a MOV
+/// \param results  of the recording `graph`, or constants, which become nodes of it; what they do
+///                 not need is left out. One that no operation made costs a MOV
 VectorCode vector_code(ExpressionGraph& graph, std::span<Graph const> results);
 inline VectorCode vector_code(ExpressionGraph& graph, std::initializer_list<Graph> results)
 {

@@ -450,10 +450,30 @@ TEST(VectorCode, NothingMovesAcrossAFetchAndAnAddressIsOneRegister)
     VectorCode const code = expect_code(s.g, {texel.y, texel.w}, {1, 1, 0, 1, 1, 1});
     EXPECT_EQ(code.listing.back().substr(0, 9), "TEX R0.yw");
     EXPECT_EQ(code.listing.back().substr(code.listing.back().size() - 4), "tex3");
-    // Another texture at the same point needs no other move; an ADD after it stays after it.
+    // Another texture at the same point needs no other move.
     Texture2D const more(std::span<float const>(), 1, 1, 4, "more", 1, 1, &s.g);
     Graph const other = fetch_texel<Graph>(more, {u, v}).x;
     expect_code(s.g, {texel.y, texel.w, other, other + x}, {2, 1, 0, 2, 1, 2});
+}
+
+TEST(VectorCode, OperationsStayBehindAFetchAndBehindWiderInstructions)
+{
+    Inputs s;
+    Texture2D const t(std::span<float const>(), 1, 1, 0, "t", 1, 1, &s.g);
+    Graph const a = s.in(), b = s.in(), c = s.in();
+    Graph const sum = a + b, texel = fetch_texel<Graph>(t, {a, b}).x, more = a + c;
+    expect_code(s.g, {sum, texel, more}, {2, 0, 0, 1, 0, 2});
+    expect_code(s.g, {sum, more}, {1, 0, 0, 0, 0, 1}); // nothing between
+    // Sums, three products, another sum: it joins three sums, not two, across the products.
+    for (int n : {2, 3}) {
+        Inputs of;
+        float3<Graph> const x = of.vector(), y = of.vector();
+        std::vector<Graph> results{x.x + y.x, x.y + y.y};
+        if (n == 3) results.push_back(x.z + y.z);
+        for (Graph const& product : {x.x * y.x, x.y * y.y, x.z * y.z}) results.push_back(product);
+        results.push_back(x.x + y.y);
+        expect_code(of.g, results, {n == 2 ? 2u : 1u, 1, 0, 0, 0, 2});
+    }
 }
 
 TEST(VectorCode, NegationAbsoluteValueAndWhatNoResultNeedsAreFree)
