@@ -2,8 +2,9 @@
 // valence 4 and as many of valence 9, 33 x 33 fragments each.
 //
 // A quad is drawn into each patch's place of a float target; a fragment adds 16 or 26 control
-// points, constants of the draw, with weights from a texture of one channel. With `empty` shaders
-// do nothing: what a draw costs beside its fragments. Counters: microseconds a draw.
+// points, constants of the draw, with weights from a texture of one channel, which holds the tables
+// of as many patch types as `types` says. With `empty` shaders do nothing: what a draw costs beside
+// them. Counters: microseconds a draw.
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/texture.h"
@@ -41,7 +42,7 @@ struct QuadVertexShader {
 struct TableSum {
     template <class T> using Input = Coordinates<T>;
     Texture2D tables; ///< side by side
-    int terms;
+    int terms, first_row;
     ConstantBuffer<float> points;
     std::vector<ResourceInfo> resources() const { return {tables.info()}; }
 
@@ -49,7 +50,7 @@ struct TableSum {
     {
         float3<T> sum(T(0), T(0), T(0));
         for (int i : loop<T>(terms)) {
-            float2<T> const at(T(float(kGrid * i)) + in.at.x, in.at.y);
+            float2<T> const at(T(float(kGrid * i)) + in.at.x, T(float(first_row)) + in.at.y);
             T const weight = fetch_texel<T>(tables, at).x;
             float3<T> const p(load<T>(points, 3 * i), load<T>(points, 3 * i + 1),
                               load<T>(points, 3 * i + 2));
@@ -68,10 +69,11 @@ struct Empty {
 
 class TableDraws {
 public:
-    TableDraws(int terms, bool empty)
+    TableDraws(int terms, int types, bool empty)
         : terms_(terms),
+          types_(types),
           empty_(empty),
-          tables_(std::size_t(kGrid * kGrid * terms), 1 / 64.0f),
+          tables_(std::size_t(kGrid * kGrid * terms * types), 1 / 64.0f),
           points_(std::size_t(3 * terms), 2.0f),
           color_(kSide * kGrid, kSide * kGrid, Format::R32G32B32A32_FLOAT)
     {
@@ -98,11 +100,14 @@ private:
         Draw d;
         d.pipeline.vertex_shader = bind_vertex_shader(QuadVertexShader{}, {});
         Texture2D const texture(std::as_bytes(std::span(tables_)), Format::R32_FLOAT,
-                                kGrid * terms_, kGrid, std::size_t(kGrid * terms_), 0, "tables");
+                                kGrid * terms_, kGrid * types_, std::size_t(kGrid * terms_), 0,
+                                "tables");
         d.pipeline.pixel_shader =
             empty_
                 ? bind_pixel_shader(Empty{}, {})
-                : bind_pixel_shader(TableSum{texture, terms_, ConstantBuffer<float>(points_)}, {});
+                : bind_pixel_shader(TableSum{texture, terms_, kGrid * int(i % std::size_t(types_)),
+                                             ConstantBuffer<float>(points_)},
+                                    {});
         d.call.topology = PrimitiveTopology::TriangleList;
         d.call.set_vertices(quad_, 6);
         d.call.vertex_count = 6;
@@ -114,7 +119,7 @@ private:
         return d;
     }
 
-    int terms_;
+    int terms_, types_;
     bool empty_;
     std::vector<float> tables_, points_, quad_;
     ColorTarget color_;
@@ -123,21 +128,21 @@ private:
 
 void table_draws(benchmark::State& state)
 {
-    TableDraws const scene(int(state.range(0)), state.range(1) != 0);
-    ThreadPool const threads(int(state.range(2)));
+    TableDraws const scene(int(state.range(0)), int(state.range(1)), state.range(2) != 0);
+    ThreadPool const threads(int(state.range(3)));
     DrawStatistics statistics;
     for (auto _ : state) statistics = scene.frame(threads);
     if (statistics.pipeline.PSInvocations != std::uint64_t(kDraws) * kGrid * kGrid)
         state.SkipWithError("fragments are missing");
-    if (state.range(1) == 0 && scene.least() != float(state.range(0)) / 32)
+    if (state.range(2) == 0 && scene.least() != float(state.range(0)) / 32)
         state.SkipWithError("sums are wrong");
     state.counters["time/draw"] =
         benchmark::Counter(double(kDraws), benchmark::Counter::kIsIterationInvariantRate |
                                                benchmark::Counter::kInvert);
 }
 BENCHMARK(table_draws)
-    ->ArgsProduct({{16, 26}, {0, 1}, {1, 2}})
-    ->ArgNames({"terms", "empty", "threads"})
+    ->ArgsProduct({{16, 26}, {1, 16}, {0, 1}, {1, 2}})
+    ->ArgNames({"terms", "types", "empty", "threads"})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 

@@ -149,7 +149,7 @@ public:
         return c;
     }
 
-    /// Unique reads: a control point, a vector of one, an element of a buffer, a texel are one each.
+    /// Unique reads: one each for a control point, a vector of one, a buffer's element, a texel.
     std::uint64_t loads() const
     {
         std::set<std::tuple<Op, int, int, std::uint32_t>> units;

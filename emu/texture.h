@@ -294,9 +294,9 @@ float4<T> load(Texture2D const& texture, int_of<T> x, int_of<T> y, int level = 0
     }
 }
 
-/// The texel that holds the point `at`, in texels from the top left corner: a rectangle texture with
-/// the filter NEAREST in OpenGL, Load of the whole numbers below in Direct3D 11. One counted fetch;
-/// the conversion is part of it. Out of range as load().
+/// The texel that holds the point `at`, in texels from the top left corner: a rectangle texture
+/// with the filter NEAREST in OpenGL, Load of the whole numbers below in Direct3D 11. One counted
+/// fetch; the conversion is part of it. Out of range as load().
 template <class T> float4<T> fetch_texel(Texture2D const& texture, float2<T> const& at)
 {
     if constexpr (RecordingScalar<T>) {

@@ -15,6 +15,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <map>
@@ -276,6 +277,11 @@ TEST(DrawBatch, GivesTheTargetsAndCountsOfItsDrawsOneByOneOnAnyThreads)
     ListStatistics const one_by_one = run_commands(list, ThreadPool(1));
     ASSERT_EQ(one_by_one.commands.size(), 1u);
     EXPECT_EQ(one_by_one.total.pipeline.PSInvocations, count * 81);
+    StageStatistics const& shading =
+        *std::find_if(one_by_one.total.stages.begin(), one_by_one.total.stages.end(),
+                      [](StageStatistics const& stage) { return stage.stage == "pixel_shader"; });
+    ASSERT_EQ(shading.fetches.size(), 1u);
+    EXPECT_EQ(shading.fetches[0].unique_bytes, count * 81 * sizeof(float)); // of each draw
     for (int threads : {1, 2, 3, 8}) {
         Cells cells;
         CommandList batch;
