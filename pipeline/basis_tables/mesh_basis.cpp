@@ -2,6 +2,7 @@
 #include "pipeline/basis_tables/mesh_basis.h"
 
 #include "emu/parallel.h"
+#include "pipeline/mesh/flatness.h"
 
 #include <algorithm>
 #include <cassert>
@@ -78,15 +79,14 @@ public:
         if (rules.sectors == SectorRules::Biermann) {
             for (int v = 0; v < 3; ++v) {
                 VertexRing const ring = ring_at(beyond[std::size_t(v)]).first;
-                std::size_t const edge =
-                    (ring.position + (v == PatchType::RightVertex)) % ring.edge_count();
-                bool const leans = v != PatchType::DiagonalVertex && ring.leans(ring.edge(edge));
-                if (leans || ring.is_flattened(rules.flatness))
-                    add_beyond(v, beyond[std::size_t(v)], out);
+                bool const leans =
+                    v != PatchType::DiagonalVertex &&
+                    ring.leans((ring.position + (v == PatchType::RightVertex)) % ring.edge_count());
+                if (leans || is_moved(ring)) add_beyond(v, beyond[std::size_t(v)], out);
             }
             bool const any = std::any_of(type.beyond.begin(), type.beyond.end(),
                                          [](auto const& ring) { return ring.has_value(); });
-            if (any || corner.is_tagged() || corner.is_flattened(rules.flatness)) {
+            if (any || corner.is_tagged() || is_moved(corner)) {
                 type.sectors = SectorRules::Biermann;
                 type.flatness = rules.flatness;
             }
@@ -155,7 +155,7 @@ private:
         for (std::uint32_t j = 0; j < ring_.edge.size(); ++j)
             if (ring_.edge[j] > 0) cuts.push_back(j);
         out.vertex = std::min(ring_.vertex, kInfinitelySharp);
-        if (!ring_.is_semi_sharp() && cuts.size() > 1) {
+        if (!ring_.is_semi_sharp() && cuts.size() > 1 && !are_moved_together()) {
             if (!ring_.open) cuts.push_back(cuts[0] + n); // round to the first
             std::size_t s = 0;
             auto const in_sector = [&] { return (position + n - cuts[s] % n) % n; };
@@ -174,14 +174,28 @@ private:
         if (!cuts.empty()) {
             out.edges = ring_.edge;
             std::rotate(out.edges.begin(), out.edges.begin() + first, out.edges.end());
-            out.concave = is_concave(t_.ring(v)[cuts[0] % n]);
         }
         return {out, first};
+    }
+    // Sectors of a crease that flatness moves because of one of them.
+    bool are_moved_together() const
+    {
+        if (!is_flattened(ring_, ring_.edge.size()) || ring_.rule() != VertexRule::Crease)
+            return false;
+        auto const sectors = ring_.sectors();
+        return std::any_of(sectors.begin(), sectors.end(),
+                           [](RingSector const& s) { return s.faces <= 2; });
     }
     bool is_concave(HalfEdge first_of_sector) const
     {
         auto const& all = t_.mesh().concave;
         return std::binary_search(all.begin(), all.end(), first_of_sector);
+    }
+    // In each step.
+    bool is_moved(VertexRing const& r) const
+    {
+        SubdivisionRules const& rules = t_.mesh().rules;
+        return is_flattened(r.sharpness(rules.sectors, rules.flatness), r.faces);
     }
     void add_beyond(int v, HalfEdge h, FoundPatch& out)
     {

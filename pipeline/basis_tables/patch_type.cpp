@@ -130,17 +130,22 @@ bool VertexRing::is_semi_sharp() const
            std::any_of(edges.begin(), edges.end(), is_finite_sharpness);
 }
 
-bool VertexRing::leans(float sharpness) const
+bool VertexRing::leans(std::size_t j) const
 {
-    if (!is_tagged() || sharpness > 0) return false;
-    if (vertex > 0) return concave || faces != 1; // an angle of pi/2 in all
-    return faces != (closed ? 4 : 2);             // of pi/2 each
+    Lean const by = sharpness(SectorRules::Biermann, {}).leans()[j];
+    return by.end == 0 && by.cos_theta != 0;
 }
 
-bool VertexRing::is_flattened(std::optional<double> flatness) const
+RingSharpness VertexRing::sharpness(SectorRules sectors, std::optional<double> flatness) const
 {
-    if (!flatness) return concave;
-    return *flatness > 0 && (is_tagged() || faces != 4);
+    RingSharpness out;
+    out.open = !closed;
+    out.vertex = vertex;
+    out.biermann = sectors == SectorRules::Biermann;
+    out.flatness = flatness;
+    for (std::size_t j = 0; j < edge_count(); ++j) out.edge.push_back(edge(j));
+    if (concave) out.concave.push_back(0); // sectors alone are
+    return out;
 }
 
 PatchFamily PatchType::family() const
@@ -150,7 +155,10 @@ PatchFamily PatchType::family() const
     if (corner.vertex > 0)
         return corner.concave ? PatchFamily::ConcaveCorner : PatchFamily::ConvexCorner;
     if (!corner.closed) return PatchFamily::Crease;
-    if (!corner.edges.empty()) return PatchFamily::Dart;
+    if (!corner.edges.empty())
+        return std::count(corner.edges.begin(), corner.edges.end(), 0.0f) + 1 == corner.faces
+                   ? PatchFamily::Dart
+                   : PatchFamily::Crease;
     return corner.faces == 4 ? PatchFamily::Regular : PatchFamily::Smooth;
 }
 

@@ -55,10 +55,10 @@ struct VertexRing {
     float edge(std::size_t j) const;
     bool is_semi_sharp() const;
     bool is_tagged() const { return !closed || vertex > 0 || !edges.empty(); }
-    /// By Biermann's rules: the edge point of an edge of such sharpness is not the plain one.
-    bool leans(float sharpness) const;
-    /// By Biermann's rules: its ring is moved in each step.
-    bool is_flattened(std::optional<double> flatness) const;
+    /// By Biermann's rules: the point of edge `j` is not the plain one.
+    bool leans(std::size_t j) const;
+    /// Where it is the ring of a vertex of a mesh with such rules.
+    RingSharpness sharpness(SectorRules sectors, std::optional<double> flatness) const;
 };
 
 /// Patches of equal types have the same tables, bit for bit.

@@ -66,9 +66,10 @@ struct SymmetryReport {
     Classes on_corner;              ///< Lower, Left; of V, its ring and what lies beyond
     Classes two_ring;               ///< the same, of (2,0), (2,1), (2,-1) and their mirror images
     std::size_t entries = 0;        ///< of positions and tangents that were compared
-    std::size_t changed = 0;        ///< entries
-    std::uint64_t changed_ulps = 0; ///< in all
-    std::uint32_t most_ulps = 0;    ///< of one entry, between numbers of one sign
+    std::size_t changed = 0;        ///< entries that got another value
+    std::size_t zeroed = 0;         ///< of these: roundings of 0
+    std::uint64_t changed_ulps = 0; ///< of the others, in all
+    std::uint32_t most_ulps = 0;    ///< of one entry
     std::size_t passes = 0;         ///< until nothing changed
 };
 
