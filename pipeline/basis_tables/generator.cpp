@@ -115,13 +115,8 @@ private:
                   std::vector<HalfEdge> const& half_edge)
     {
         if (ring.vertex > 0) out_.mesh.corners.push_back({vertex, ring.vertex});
-        std::size_t first_sharp = ring.edge_count();
-        for (std::size_t i = ring.edge_count(); i-- > 0;) {
-            tag(vertex, edge(i), ring.edge(i));
-            if (ring.edge(i) > 0) first_sharp = i;
-        }
-        if (ring.concave && first_sharp < half_edge.size())
-            out_.mesh.concave.push_back(half_edge[first_sharp]);
+        for (std::size_t i = 0; i < ring.edge_count(); ++i) tag(vertex, edge(i), ring.edge(i));
+        for (std::uint16_t i : ring.concave) out_.mesh.concave.push_back(half_edge[i]);
     }
 
     void add_corner()

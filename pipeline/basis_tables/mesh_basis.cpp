@@ -155,7 +155,10 @@ private:
         for (std::uint32_t j = 0; j < ring_.edge.size(); ++j)
             if (ring_.edge[j] > 0) cuts.push_back(j);
         out.vertex = std::min(ring_.vertex, kInfinitelySharp);
-        if (!ring_.is_semi_sharp() && cuts.size() > 1 && !are_moved_together()) {
+        // A given flatness may move a sector because of another.
+        bool const is_whole =
+            ring_.biermann && ring_.flatness && *ring_.flatness > 0 && !ring_.open;
+        if (!ring_.is_semi_sharp() && cuts.size() > 1 && !is_whole) {
             if (!ring_.open) cuts.push_back(cuts[0] + n); // round to the first
             std::size_t s = 0;
             auto const in_sector = [&] { return (position + n - cuts[s] % n) % n; };
@@ -164,7 +167,7 @@ private:
             out.faces = std::uint16_t(cuts[s + 1] - cuts[s]);
             out.position = std::uint16_t(in_sector());
             out.vertex = ring_.rule() == VertexRule::Corner ? kInfinitelySharp : 0;
-            out.concave = is_concave(t_.ring(v)[cuts[s] % n]);
+            if (is_concave(cuts[s] % n)) out.concave = {0};
             return {out, cuts[s] % n};
         }
         out.faces = std::uint16_t(n);
@@ -174,22 +177,15 @@ private:
         if (!cuts.empty()) {
             out.edges = ring_.edge;
             std::rotate(out.edges.begin(), out.edges.begin() + first, out.edges.end());
+            for (std::size_t edge : ring_.concave)
+                out.concave.push_back(std::uint16_t((edge + n - first) % n));
+            std::sort(out.concave.begin(), out.concave.end());
         }
         return {out, first};
     }
-    // Sectors of a crease that flatness moves because of one of them.
-    bool are_moved_together() const
+    bool is_concave(std::size_t edge) const
     {
-        if (!is_flattened(ring_, ring_.edge.size()) || ring_.rule() != VertexRule::Crease)
-            return false;
-        auto const sectors = ring_.sectors();
-        return std::any_of(sectors.begin(), sectors.end(),
-                           [](RingSector const& s) { return s.faces <= 2; });
-    }
-    bool is_concave(HalfEdge first_of_sector) const
-    {
-        auto const& all = t_.mesh().concave;
-        return std::binary_search(all.begin(), all.end(), first_of_sector);
+        return std::binary_search(ring_.concave.begin(), ring_.concave.end(), edge);
     }
     // In each step.
     bool is_moved(VertexRing const& r) const

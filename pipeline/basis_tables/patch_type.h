@@ -42,13 +42,13 @@ std::string in_words(PatchFamily family);
 /// Faces around a vertex, counter-clockwise, and what is sharp there.
 struct VertexRing {
     bool closed = true;
-    bool concave = false; ///< by Biermann's rules; of a sharp corner
     std::uint16_t faces = 4;
     std::uint16_t position = 0; ///< of the face by which it is looked at; closed: 0
     float vertex = 0;           ///< its own sharpness
     /// Of each edge: as many as faces, and one more where it is open, whose first and last are
     /// infinitely sharp. Empty: nothing else is sharp.
     std::vector<float> edges;
+    std::vector<std::uint16_t> concave; ///< by Biermann's rules: first edges of concave sectors
 
     auto operator<=>(VertexRing const&) const = default;
     std::size_t edge_count() const { return std::size_t(faces) + (closed ? 0 : 1); }

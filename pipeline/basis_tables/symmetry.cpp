@@ -336,6 +336,10 @@ PatchType neighbour_below(PatchType t)
 {
     if (t.corner.closed && !t.corner.edges.empty())
         std::rotate(t.corner.edges.rbegin(), t.corner.edges.rbegin() + 1, t.corner.edges.rend());
+    if (t.corner.closed)
+        for (std::uint16_t& edge : t.corner.concave)
+            edge = std::uint16_t((edge + 1) % t.corner.faces);
+    std::sort(t.corner.concave.begin(), t.corner.concave.end());
     if (!t.corner.closed) --t.corner.position;
     return t;
 }

@@ -26,7 +26,7 @@ std::vector<TableFamily> table_families(int first, int last, SubdivisionRules co
             add(crease, sector_type(k, j));
             PatchType corner = sector_type(k, j, true);
             add(convex, corner);
-            corner.corner.concave = true;
+            corner.corner.concave = {0};
             if (biermann && k >= 2) add(concave, corner);
         }
     }
