@@ -5,6 +5,7 @@
 #include "io/image_reader.h"
 #include "io/input_file.h"
 #include "io/sha256.h"
+#include "io/table_cache.h"
 
 #include <fmt/format.h>
 
@@ -57,6 +58,12 @@ SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make, Warnin
     options.placement = model.placement;
     options.lines = std::move(model.lines);
     options.warn = warn;
+    bool const is_named = o.table_cache.has_value();
+    std::filesystem::path const folder =
+        is_named ? std::filesystem::path(*o.table_cache) : default_table_cache();
+    std::optional<BasisTableCache> cache;
+    if (!folder.empty() && folder != "none")
+        options.tables = &cache.emplace(folder, is_named ? warn : WarningSink());
     try {
         return make(*o.scheme, std::move(model.mesh), options);
     } catch (MeshError const& e) {

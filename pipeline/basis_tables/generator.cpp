@@ -24,6 +24,7 @@ struct Piece {
     ControlMesh mesh;
     std::vector<X> points;      // by vertex
     std::vector<Place> places;  // by vertex
+    std::vector<char> is_cut;   // by vertex: its ring is not whole
     std::vector<char> of_patch; // by face
     std::uint32_t corner = 0;   // V
 };
@@ -64,6 +65,11 @@ public:
         out_.places[e(j_)] = {kCells, 0};
         out_.places[f(j_)] = {kCells, kCells};
         out_.places[e(j_ + 1)] = {0, kCells};
+        out_.is_cut.assign(vertices_, 1);
+        for (std::uint32_t v : {0u, e(j_), f(j_), e(j_ + 1)}) out_.is_cut[v] = 0;
+        if (type.beyond[PatchType::RightVertex]) out_.is_cut[x20()] = 0;
+        if (type.beyond[PatchType::DiagonalVertex]) out_.is_cut[x22()] = 0;
+        if (type.beyond[PatchType::UpperVertex]) out_.is_cut[x02()] = 0;
         out_.of_patch.assign(mesh.faces(), 0);
         out_.of_patch[j_] = 1;
     }
@@ -109,13 +115,8 @@ private:
                   std::vector<HalfEdge> const& half_edge)
     {
         if (ring.vertex > 0) out_.mesh.corners.push_back({vertex, ring.vertex});
-        std::size_t first_sharp = ring.edge_count();
-        for (std::size_t i = ring.edge_count(); i-- > 0;) {
-            tag(vertex, edge(i), ring.edge(i));
-            if (ring.edge(i) > 0) first_sharp = i;
-        }
-        if (ring.concave && first_sharp < half_edge.size())
-            out_.mesh.concave.push_back(half_edge[first_sharp]);
+        for (std::size_t i = 0; i < ring.edge_count(); ++i) tag(vertex, edge(i), ring.edge(i));
+        for (std::uint16_t i : ring.concave) out_.mesh.concave.push_back(half_edge[i]);
     }
 
     void add_corner()
@@ -214,7 +215,7 @@ private:
 Piece refined(Piece const& piece)
 {
     Topology const topology(piece.mesh);
-    Sharpness const sharpness(topology);
+    Sharpness const sharpness(topology, piece.is_cut);
     std::vector<X> points = refined_points<CatmullClark, X>(topology, sharpness, piece.points);
     ControlMesh const fine =
         catmull_clark_mesh(topology, sharpness, std::vector<glm::dvec3>(points.size()));
@@ -257,6 +258,7 @@ Piece refined(Piece const& piece)
                 v = std::uint32_t(out.points.size());
                 out.points.push_back(std::move(points[face[i]]));
                 out.places.push_back(places[face[i]]);
+                out.is_cut.push_back(!places[face[i]].on_patch());
             }
             quad[i] = v;
         }
@@ -288,22 +290,61 @@ struct Around {
     int turns;            // the edge before that face runs along u, turned by so many right angles
 };
 
-Around around(Piece const& piece, Topology const& t, Sharpness const& sharpness, std::uint32_t v)
-{
-    auto const faces = t.ring(v);
-    auto const& x = piece.points;
-    Around out{{x[v], {}, {}}, {}, 0, 0};
-    while (!piece.of_patch[t.face_of(faces[out.position])]) ++out.position;
-    for (HalfEdge h : faces) {
-        out.ring.edge.push_back(x[t.vertex_of(t.next(h))]);
-        out.ring.face.push_back(x[t.vertex_of(t.next(t.next(h)))]);
+// Of the piece's points, or of those after another step.
+class Rings {
+public:
+    Rings(Piece const& piece, Topology const& t)
+        : piece_(piece),
+          t_(t),
+          sharpness_(t, piece.is_cut),
+          edges_(t)
+    {
+        // By Biermann's rules a vertex depends on those around it in the next step: how they lean
+        // and flatten.
+        if (piece.mesh.rules.sectors == SectorRules::Biermann)
+            next_ = refined_points<CatmullClark, X>(t, sharpness_, piece.points);
     }
-    if (t.is_boundary(v)) out.ring.edge.push_back(x[t.vertex_of(t.previous(faces.back()))]);
-    sharpness.around(v, out.sharp);
-    Place const a = piece.places[v], b = piece.places[t.vertex_of(t.next(faces[out.position]))];
-    out.turns = b.i > a.i ? 0 : b.j > a.j ? 1 : b.i < a.i ? 2 : 3;
-    return out;
-}
+    int further_steps() const { return next_.empty() ? 0 : 1; }
+
+    Around around(std::uint32_t v) const
+    {
+        auto const faces = t_.ring(v);
+        Around out{{vertex(v), {}, {}}, {}, 0, 0};
+        while (!piece_.of_patch[t_.face_of(faces[out.position])]) ++out.position;
+        for (HalfEdge h : faces) {
+            out.ring.edge.push_back(edge(h, t_.next(h)));
+            out.ring.face.push_back(next_.empty() ? vertex(t_.vertex_of(t_.next(t_.next(h))))
+                                                  : next_[t_.face_of(h)]);
+        }
+        if (t_.is_boundary(v)) {
+            HalfEdge const last = t_.previous(faces.back());
+            out.ring.edge.push_back(edge(last, last));
+        }
+        sharpness_.around(v, out.sharp);
+        if (!next_.empty()) out.sharp = out.sharp.after_step();
+        Place const a = piece_.places[v],
+                    b = piece_.places[t_.vertex_of(t_.next(faces[out.position]))];
+        out.turns = b.i > a.i ? 0 : b.j > a.j ? 1 : b.i < a.i ? 2 : 3;
+        return out;
+    }
+
+private:
+    X const& vertex(std::uint32_t v) const
+    {
+        return next_.empty() ? piece_.points[v] : next_[t_.mesh().faces() + edges_.size() + v];
+    }
+    // Along an edge, to the vertex of the half-edge `far`.
+    X const& edge(HalfEdge h, HalfEdge far) const
+    {
+        return next_.empty() ? vertex(t_.vertex_of(far)) : next_[t_.mesh().faces() + edges_[h]];
+    }
+
+    Piece const& piece_;
+    Topology const& t_;
+    Sharpness sharpness_;
+    EdgeNumbers edges_;
+    std::vector<X> next_; // empty: not needed
+};
 
 struct Sample {
     X position, du, dv;
@@ -350,21 +391,25 @@ void set_derivatives(Around const& a, double h, Sample& out)
     }
 }
 
-// What a side's tangents make of the modes whose edges are the cosines, or sines, of j theta and
-// whose faces are the sums of their edges: to bring the tangents to one scale.
-std::array<double, 2> on_angular_modes(Around const& a, Limits<CatmullClark>& limits,
-                                       std::size_t side, std::size_t first, int half_turns, int k)
+// What a side's tangents make of the modes of theta = pi turn / of, whose edges are the cosines, or
+// sines, of j theta and whose faces are the sums of their edges: [tangent][mode]
+std::array<std::array<double, 2>, 2> on_modes(Around const& a, Limits<CatmullClark>& limits,
+                                              std::size_t side, RingSector const& sector)
 {
     std::size_t const n = a.ring.faces(), edges = a.ring.edge.size();
-    std::array<double, 2> out;
+    std::array<std::array<double, 2>, 2> out;
     for (std::size_t m = 0; m < 2; ++m) {
-        auto const at = [&](int j) {
-            return m == 0 ? cos_pi(half_turns * j, k) : sin_pi(half_turns * j, k);
+        auto const at = [&](std::size_t j) {
+            int const turn = int(j) * sector.turn;
+            return m == 0 ? cos_pi(turn, sector.of) : sin_pi(turn, sector.of);
         };
         Ring<double> ring{0, std::vector<double>(edges, 0), std::vector<double>(n, 0)};
-        for (int j = 0; j <= k; ++j) ring.edge[(first + std::size_t(j)) % edges] = at(j);
-        for (int j = 0; j < k; ++j) ring.face[(first + std::size_t(j)) % n] = at(j) + at(j + 1);
-        out[m] = limits.of(ring, a.sharp).sides[side].tangents[m];
+        for (std::size_t j = 0; j < sector.faces + (sector.closed ? 0 : 1); ++j)
+            ring.edge[(sector.first + j) % edges] = at(j);
+        for (std::size_t j = 0; j < sector.faces; ++j)
+            ring.face[(sector.first + j) % n] = at(j) + at(j + 1);
+        auto const limit = limits.of(ring, a.sharp);
+        for (std::size_t t = 0; t < 2; ++t) out[t][m] = limit.sides[side].tangents[t];
     }
     return out;
 }
@@ -374,37 +419,44 @@ void set_directions(Around const& a, Limits<CatmullClark>& limits, Sample& out)
 {
     std::size_t const n = a.ring.faces();
     VertexLimit<X> const limit = limits.of(a.ring, a.sharp);
+    std::vector<RingSector> const sectors = a.sharp.sectors();
     std::size_t s = 0, j = 0; // the patch is face j of side s
-    while ((j = (a.position + n - limit.sides[s].first_face) % n) >= limit.sides[s].faces) ++s;
-    auto const& side = limit.sides[s];
-    int const k = int(side.faces);
-    bool const whole = !a.sharp.open && side.faces == n;
-    X even = side.tangents[0], odd = side.tangents[1];
-    if (whole && limit.rule == VertexRule::Corner) { // with a sharp edge or without
+    while ((j = (a.position + n - sectors[s].first % n) % n) >= sectors[s].faces) ++s;
+    RingSector const& sector = sectors[s];
+    X first = limit.sides[s].tangents[0], second = limit.sides[s].tangents[1];
+    bool const is_corner = limit.rule == VertexRule::Corner;
+    if (is_corner && sector.closed && !a.sharp.biermann) { // with a sharp edge or without
         auto const of = [&](auto const& list) {
-            return [&](std::size_t i) -> X const& { return list[(side.first_face + i) % n]; };
+            return [&](std::size_t i) -> X const& { return list[(sector.first + i) % n]; };
         };
-        auto const smooth = CatmullClark::limit(k, a.ring.vertex, of(a.ring.edge), of(a.ring.face));
-        even = smooth[1], odd = smooth[2];
+        auto const smooth =
+            CatmullClark::limit(int(n), a.ring.vertex, of(a.ring.edge), of(a.ring.face));
+        first = smooth[1], second = smooth[2];
     }
-    // At a corner both sharp edges are tangent, for all patches between them; two faces lie at
-    // opposite sides of their edges.
-    if ((!whole && (limit.rule == VertexRule::Corner || k == 1)) || (whole && k == 2)) {
-        out.du = std::move(even), out.dv = std::move(odd);
+    // At a corner both sharp edges are tangent, for all patches between them; the edges of two
+    // faces, and of one on a crease, lie in one line.
+    if (sector.closed ? sector.faces == 2
+                      : (is_corner && !a.sharp.biermann) || (!is_corner && sector.faces == 1)) {
+        out.du = std::move(first), out.dv = std::move(second);
         return;
     }
-    int const half_turns = whole ? 2 : 1; // theta is so many, over k
-    if (limit.rule == VertexRule::Dart || limit.rule == VertexRule::Crease) {
-        auto const [on_even, on_odd] =
-            on_angular_modes(a, limits, s, side.first_face, half_turns, k);
-        even /= on_even;
-        odd /= on_odd;
+    X even = first, odd = second; // the tangents dual to the modes, or of the scale of those
+    if (a.sharp.biermann) {
+        auto const m = on_modes(a, limits, s, sector);
+        double const determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+        even = (m[1][1] * first - m[0][1] * second) / determinant;
+        odd = (m[0][0] * second - m[1][0] * first) / determinant;
+    } else if (!is_corner && limit.rule != VertexRule::Smooth) {
+        auto const m = on_modes(a, limits, s, sector);
+        even /= m[0][0];
+        odd /= m[1][1];
     }
-    auto const direction = [&](int i) -> X {
-        return cos_pi(half_turns * i, k) * even + sin_pi(half_turns * i, k) * odd;
+    auto const direction = [&](std::size_t i) -> X {
+        int const turn = int(i) * sector.turn;
+        return cos_pi(turn, sector.of) * even + sin_pi(turn, sector.of) * odd;
     };
-    out.du = direction(int(j));
-    out.dv = direction(int(j) + 1);
+    out.du = direction(j);
+    out.dv = direction(j + 1);
 }
 
 } // namespace
@@ -414,7 +466,7 @@ BasisTables make_basis_tables(PatchType const& type)
     Piece piece = PieceBuilder(type).take();
     for (int s = 0; s < kTableSteps; ++s) piece = refined(piece);
     Topology const topology(piece.mesh);
-    Sharpness const sharpness(topology);
+    Rings const rings(piece, topology);
     Limits<CatmullClark> limits;
     BasisTables out;
     std::size_t const all = piece.points[0].size();
@@ -423,10 +475,10 @@ BasisTables make_basis_tables(PatchType const& type)
     for (std::uint32_t v = 0; v < piece.points.size(); ++v) {
         Place const place = piece.places[v];
         if (!place.on_patch()) continue;
-        Around a = around(piece, topology, sharpness, v);
+        Around a = rings.around(v);
         Sample s;
         s.position = limits.of(a.ring, a.sharp).position;
-        double h = 1.0 / (kTableSide - 1);
+        double h = 1.0 / ((kTableSide - 1) << rings.further_steps());
         while (a.sharp.is_semi_sharp()) {
             a.ring = refined_ring<CatmullClark>(a.ring, a.sharp);
             a.sharp = a.sharp.after_step();

@@ -2,6 +2,7 @@
 #include "pipeline/basis_tables/mesh_basis.h"
 
 #include "emu/parallel.h"
+#include "pipeline/mesh/flatness.h"
 
 #include <algorithm>
 #include <cassert>
@@ -78,15 +79,14 @@ public:
         if (rules.sectors == SectorRules::Biermann) {
             for (int v = 0; v < 3; ++v) {
                 VertexRing const ring = ring_at(beyond[std::size_t(v)]).first;
-                std::size_t const edge =
-                    (ring.position + (v == PatchType::RightVertex)) % ring.edge_count();
-                bool const leans = v != PatchType::DiagonalVertex && ring.leans(ring.edge(edge));
-                if (leans || ring.is_flattened(rules.flatness))
-                    add_beyond(v, beyond[std::size_t(v)], out);
+                bool const leans =
+                    v != PatchType::DiagonalVertex &&
+                    ring.leans((ring.position + (v == PatchType::RightVertex)) % ring.edge_count());
+                if (leans || is_moved(ring)) add_beyond(v, beyond[std::size_t(v)], out);
             }
             bool const any = std::any_of(type.beyond.begin(), type.beyond.end(),
                                          [](auto const& ring) { return ring.has_value(); });
-            if (any || corner.is_tagged() || corner.is_flattened(rules.flatness)) {
+            if (any || corner.is_tagged() || is_moved(corner)) {
                 type.sectors = SectorRules::Biermann;
                 type.flatness = rules.flatness;
             }
@@ -155,7 +155,10 @@ private:
         for (std::uint32_t j = 0; j < ring_.edge.size(); ++j)
             if (ring_.edge[j] > 0) cuts.push_back(j);
         out.vertex = std::min(ring_.vertex, kInfinitelySharp);
-        if (!ring_.is_semi_sharp() && cuts.size() > 1) {
+        // A given flatness may move a sector because of another.
+        bool const is_whole =
+            ring_.biermann && ring_.flatness && *ring_.flatness > 0 && !ring_.open;
+        if (!ring_.is_semi_sharp() && cuts.size() > 1 && !is_whole) {
             if (!ring_.open) cuts.push_back(cuts[0] + n); // round to the first
             std::size_t s = 0;
             auto const in_sector = [&] { return (position + n - cuts[s] % n) % n; };
@@ -164,7 +167,7 @@ private:
             out.faces = std::uint16_t(cuts[s + 1] - cuts[s]);
             out.position = std::uint16_t(in_sector());
             out.vertex = ring_.rule() == VertexRule::Corner ? kInfinitelySharp : 0;
-            out.concave = is_concave(t_.ring(v)[cuts[s] % n]);
+            if (is_concave(cuts[s] % n)) out.concave = {0};
             return {out, cuts[s] % n};
         }
         out.faces = std::uint16_t(n);
@@ -174,14 +177,21 @@ private:
         if (!cuts.empty()) {
             out.edges = ring_.edge;
             std::rotate(out.edges.begin(), out.edges.begin() + first, out.edges.end());
-            out.concave = is_concave(t_.ring(v)[cuts[0] % n]);
+            for (std::size_t edge : ring_.concave)
+                out.concave.push_back(std::uint16_t((edge + n - first) % n));
+            std::sort(out.concave.begin(), out.concave.end());
         }
         return {out, first};
     }
-    bool is_concave(HalfEdge first_of_sector) const
+    bool is_concave(std::size_t edge) const
     {
-        auto const& all = t_.mesh().concave;
-        return std::binary_search(all.begin(), all.end(), first_of_sector);
+        return std::binary_search(ring_.concave.begin(), ring_.concave.end(), edge);
+    }
+    // In each step.
+    bool is_moved(VertexRing const& r) const
+    {
+        SubdivisionRules const& rules = t_.mesh().rules;
+        return is_flattened(r.sharpness(rules.sectors, rules.flatness), r.faces);
     }
     void add_beyond(int v, HalfEdge h, FoundPatch& out)
     {

@@ -29,11 +29,13 @@ public:
     }
     void ring(VertexRing const& r)
     {
-        number((r.closed ? 1 : 0) + (r.concave ? 2 : 0), 1);
+        number(r.closed, 1);
         number(r.faces, 2);
         number(r.position, 2);
         real(r.vertex);
         reals(r.edges);
+        number(r.concave.size(), 2);
+        for (std::uint16_t edge : r.concave) number(edge, 2);
     }
     std::string out;
 };
@@ -67,8 +69,7 @@ public:
     VertexRing ring()
     {
         VertexRing r;
-        std::uint64_t const flags = number(1, 3);
-        r.closed = flags & 1, r.concave = flags & 2;
+        r.closed = number(1, 1);
         r.faces = std::uint16_t(number(2, PatchType::kMostFaces));
         check(r.faces >= (r.closed ? 2 : 1));
         r.position = std::uint16_t(number(2, r.closed ? 0 : r.faces - 1u));
@@ -77,6 +78,9 @@ public:
         check(r.edges.empty() || r.edges.size() == r.edge_count());
         check(r.closed || r.edges.empty() ||
               (r.edges[0] == kInfinitelySharp && r.edges.back() == kInfinitelySharp));
+        r.concave.resize(std::size_t(number(2, r.edge_count())));
+        for (std::uint16_t& edge : r.concave) edge = std::uint16_t(number(2, r.edge_count() - 1));
+        check(std::is_sorted(r.concave.begin(), r.concave.end()));
         return r;
     }
     double fraction()
@@ -130,27 +134,42 @@ bool VertexRing::is_semi_sharp() const
            std::any_of(edges.begin(), edges.end(), is_finite_sharpness);
 }
 
-bool VertexRing::leans(float sharpness) const
+bool VertexRing::leans(std::size_t j) const
 {
-    if (!is_tagged() || sharpness > 0) return false;
-    if (vertex > 0) return concave || faces != 1; // an angle of pi/2 in all
-    return faces != (closed ? 4 : 2);             // of pi/2 each
+    Lean const by = sharpness(SectorRules::Biermann, {}).leans()[j];
+    return by.end == 0 && by.cos_theta != 0;
 }
 
-bool VertexRing::is_flattened(std::optional<double> flatness) const
+RingSharpness VertexRing::sharpness(SectorRules sectors, std::optional<double> flatness) const
 {
-    if (!flatness) return concave;
-    return *flatness > 0 && (is_tagged() || faces != 4);
+    RingSharpness out;
+    out.open = !closed;
+    out.vertex = vertex;
+    out.biermann = sectors == SectorRules::Biermann;
+    out.flatness = flatness;
+    for (std::size_t j = 0; j < edge_count(); ++j) out.edge.push_back(edge(j));
+    out.concave.assign(concave.begin(), concave.end());
+    return out;
 }
 
 PatchFamily PatchType::family() const
 {
     if (corner.is_semi_sharp() || crease_method == CreaseMethod::Chaikin)
         return PatchFamily::SemiSharp;
-    if (corner.vertex > 0)
-        return corner.concave ? PatchFamily::ConcaveCorner : PatchFamily::ConvexCorner;
-    if (!corner.closed) return PatchFamily::Crease;
-    if (!corner.edges.empty()) return PatchFamily::Dart;
+    RingSharpness const sharp = corner.sharpness(sectors, flatness);
+    switch (sharp.rule()) {
+    case VertexRule::Corner:
+        for (RingSector const& s : sharp.sectors())
+            if ((corner.position + corner.faces - s.first % corner.faces) % corner.faces < s.faces)
+                return s.concave ? PatchFamily::ConcaveCorner : PatchFamily::ConvexCorner;
+        return PatchFamily::ConvexCorner;
+    case VertexRule::Crease:
+        return PatchFamily::Crease;
+    case VertexRule::Dart:
+        return PatchFamily::Dart;
+    case VertexRule::Smooth:
+        break;
+    }
     return corner.faces == 4 ? PatchFamily::Regular : PatchFamily::Smooth;
 }
 

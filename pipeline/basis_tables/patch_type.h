@@ -42,23 +42,23 @@ std::string in_words(PatchFamily family);
 /// Faces around a vertex, counter-clockwise, and what is sharp there.
 struct VertexRing {
     bool closed = true;
-    bool concave = false; ///< by Biermann's rules; of a sharp corner
     std::uint16_t faces = 4;
     std::uint16_t position = 0; ///< of the face by which it is looked at; closed: 0
     float vertex = 0;           ///< its own sharpness
     /// Of each edge: as many as faces, and one more where it is open, whose first and last are
     /// infinitely sharp. Empty: nothing else is sharp.
     std::vector<float> edges;
+    std::vector<std::uint16_t> concave; ///< by Biermann's rules: first edges of concave sectors
 
     auto operator<=>(VertexRing const&) const = default;
     std::size_t edge_count() const { return std::size_t(faces) + (closed ? 0 : 1); }
     float edge(std::size_t j) const;
     bool is_semi_sharp() const;
     bool is_tagged() const { return !closed || vertex > 0 || !edges.empty(); }
-    /// By Biermann's rules: the edge point of an edge of such sharpness is not the plain one.
-    bool leans(float sharpness) const;
-    /// By Biermann's rules: its ring is moved in each step.
-    bool is_flattened(std::optional<double> flatness) const;
+    /// By Biermann's rules: the point of edge `j` is not the plain one.
+    bool leans(std::size_t j) const;
+    /// Where it is the ring of a vertex of a mesh with such rules.
+    RingSharpness sharpness(SectorRules sectors, std::optional<double> flatness) const;
 };
 
 /// Patches of equal types have the same tables, bit for bit.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/basis_tables/symmetry.h"
 
+#include "pipeline/mesh/flatness.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -334,6 +336,10 @@ PatchType neighbour_below(PatchType t)
 {
     if (t.corner.closed && !t.corner.edges.empty())
         std::rotate(t.corner.edges.rbegin(), t.corner.edges.rbegin() + 1, t.corner.edges.rend());
+    if (t.corner.closed)
+        for (std::uint16_t& edge : t.corner.concave)
+            edge = std::uint16_t((edge + 1) % t.corner.faces);
+    std::sort(t.corner.concave.begin(), t.corner.concave.end());
     if (!t.corner.closed) --t.corner.position;
     return t;
 }
@@ -354,11 +360,13 @@ bool is_fold(PatchType const& t)
     return t.corner.closed && t.corner.faces == 2;
 }
 
-// Whether a neighbour across Right or Upper would need to know the corner.
-bool reaches_beyond(PatchType const& t, float sharpness_of_line)
+// Whether a neighbour across Right, or Upper, would need to know the corner.
+bool reaches_beyond(PatchType const& t, PatchSide side)
 {
     if (t.sectors == SectorRules::OpenSubdiv) return false;
-    return t.corner.leans(sharpness_of_line) || t.corner.is_flattened(t.flatness);
+    VertexRing const& c = t.corner;
+    return c.leans((c.position + (side == PatchSide::Upper ? 1u : 0u)) % c.edge_count()) ||
+           is_flattened(c.sharpness(t.sectors, t.flatness), c.faces);
 }
 
 } // namespace
@@ -385,8 +393,10 @@ std::vector<Joint> possible_joints(std::span<PatchTypeTables const> types)
     for (auto const& [type, i] : numbers) {
         VertexRing const& c = type.corner;
         float const lower = lower_sharpness(type), left = left_sharpness(type);
-        if (!is_fold(type) && !reaches_beyond(type, lower)) right[is_infinite(lower)].push_back(i);
-        if (!is_fold(type) && !reaches_beyond(type, left)) upper[is_infinite(left)].push_back(i);
+        if (!is_fold(type) && !reaches_beyond(type, PatchSide::Right))
+            right[is_infinite(lower)].push_back(i);
+        if (!is_fold(type) && !reaches_beyond(type, PatchSide::Upper))
+            upper[is_infinite(left)].push_back(i);
         if (c.closed || c.position > 0) {
             if (auto const below = numbers.find(neighbour_below(type)); below != numbers.end())
                 out.insert({i, PatchSide::Lower, below->second});

@@ -140,7 +140,9 @@ double crease_weight(float sharpness, std::array<float, 2> halves)
     return halves[0] > 0 && halves[1] > 0 ? 1 : sharpness;
 }
 
-Sharpness::Sharpness(Topology const& topology) : topology_(&topology)
+Sharpness::Sharpness(Topology const& topology, std::span<char const> is_cut)
+    : topology_(&topology),
+      is_cut_(is_cut)
 {
     add_tags();
     ControlMesh const& mesh = topology.mesh();
@@ -150,7 +152,7 @@ Sharpness::Sharpness(Topology const& topology) : topology_(&topology)
     RingSharpness around;
     for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
         auto const ring = topology.ring(v);
-        if (ring.empty() || is_plain(v)) continue;
+        if (ring.empty() || is_plain(v) || this->is_cut(v)) continue;
         around_itself(v, around);
         if (around.rule() == VertexRule::Smooth) continue;
         is_sharp_[v] = 1;

@@ -96,7 +96,10 @@ class Sharpness {
 public:
     /// \param topology  outlives this. \cost  linear in the tags and, where there are some, in the
     ///                  corners of faces
-    explicit Sharpness(Topology const& topology);
+    /// \param is_cut    by vertex, of a mesh that is a piece of another: some of its faces are not in
+    ///                  the piece, so that the boundary there is none, and what is sharp there is
+    ///                  not known. Empty: no vertex. Outlives this.
+    explicit Sharpness(Topology const& topology, std::span<char const> is_cut = {});
 
     float edge(HalfEdge h) const
     {
@@ -112,6 +115,7 @@ public:
     }
     /// No tag on it or on an edge at it, but for the boundary.
     bool is_untagged(std::uint32_t v) const { return tagged_.empty() || !tagged_[v]; }
+    bool is_cut(std::uint32_t v) const { return !is_cut_.empty() && is_cut_[v]; }
     /// \param out  reused from call to call
     void around(std::uint32_t v, RingSharpness& out) const;
     /// Of the halves of an edge after a step: at the half-edge's vertex, and at the next.
@@ -124,6 +128,7 @@ private:
     void around_itself(std::uint32_t v, RingSharpness& out) const;
 
     Topology const* topology_;
+    std::span<char const> is_cut_;
     std::vector<float> edge_;   ///< by half-edge; empty: no creases
     std::vector<float> vertex_; ///< empty: no corners
     std::vector<char> tagged_;  ///< by vertex; empty: no tags

@@ -48,7 +48,8 @@ void each_flat_ring(Topology const& topology, Sharpness const& sharpness, EdgeNu
     RingSharpness sharp;
     for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
         auto const ring = topology.ring(v);
-        if (ring.empty() || (!rules.flatness && sharpness.is_plain(v))) continue;
+        if (ring.empty() || (!rules.flatness && sharpness.is_plain(v)) || sharpness.is_cut(v))
+            continue;
         sharpness.around(v, sharp);
         if (!is_flattened(sharp, ring.size())) continue;
         auto const id = [&](std::size_t i) -> std::size_t {

@@ -20,6 +20,8 @@
 
 namespace tessemu {
 
+class BasisTableStore;
+
 /// A free choice that a user may set: a number within limits, or one of some words.
 struct SchemeParameter {
     std::string name, meaning;
@@ -84,6 +86,13 @@ struct SchemeInfo {
     std::string no_curvature = "its domain shaders give no second derivatives";
 };
 
+/// What a scheme may use while it builds; each may be none.
+struct BuildServices {
+    BasisTableStore* tables = nullptr; ///< where basis-function tables are kept
+    WarningSink warn = {};             ///< hears what is worth telling before the build is done
+    RefinementProgress progress = {};
+};
+
 class Scheme {
 public:
     virtual ~Scheme() = default;
@@ -96,8 +105,10 @@ public:
     }
     /// \param mesh        that meets info().takes
     /// \param parameters  all of info().parameters
+    /// \param services    not kept
     virtual std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
-                                             Parameters const& parameters) const = 0;
+                                             Parameters const& parameters,
+                                             BuildServices const& services) const = 0;
 };
 
 /// All schemes in the order of the papers.
@@ -140,6 +151,7 @@ struct BuildOptions {
     /// Hears the warnings, those before an error before it is thrown.
     WarningSink warn = {};
     RefinementProgress progress = {};
+    BasisTableStore* tables = nullptr; ///< for schemes that use some
 };
 
 /// Joins vertices if asked to, makes the mesh a manifold, checks it, sorts and refines it as options

@@ -593,7 +593,7 @@ public:
         warn("a warning");
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const>,
-                                     Parameters const&) const override
+                                     Parameters const&, BuildServices const&) const override
     {
         return nullptr;
     }

@@ -25,7 +25,7 @@ public:
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const>,
-                                     Parameters const&) const override
+                                     Parameters const&, BuildServices const&) const override
     {
         return nullptr;
     }
