@@ -35,8 +35,9 @@ TEST(Program, HelpAndVersionExitZeroOnEachVerb)
 {
     EXPECT_EQ(run("--help").status, 0);
     EXPECT_EQ(run("--version").status, 0);
-    for (char const* verb : {"draw", "export", "tessellate", "compare", "check", "cost",
-                             "reproduce", "diff", "info", "schemes", "models", "subdivide"}) {
+    for (char const* verb :
+         {"draw", "export", "tessellate", "compare", "check", "cost", "reproduce", "diff", "info",
+          "schemes", "models", "subdivide", "tables"}) {
         Result const help = run(std::string(verb) + " --help");
         EXPECT_EQ(help.status, 0) << verb;
         EXPECT_NE(help.out.find("Examples:"), std::string::npos) << verb;
@@ -49,7 +50,7 @@ TEST(Program, HelpAndVersionExitZeroOnEachVerb)
 TEST(Program, AVerbWithoutItsArgumentPrintsHelpAndExitsTwo)
 {
     for (char const* verb : {"", "draw", "export", "tessellate", "compare", "check", "cost",
-                             "reproduce", "diff", "info", "subdivide"}) {
+                             "reproduce", "diff", "info", "subdivide", "tables"}) {
         Result const r = run(verb);
         EXPECT_EQ(r.status, 2) << verb;
         EXPECT_TRUE(r.out.empty()) << verb;
