@@ -438,12 +438,19 @@ private:
 std::unique_ptr<PatchMesh> with_mistake(PatchMesh const& patches, PlantedMistake const& mistake,
                                         FrameSettings const& frame)
 {
-    if (frame.direct3d10 && (mistake.kind == Mistake::Factors || mistake.kind == Mistake::Fold))
+    auto const needs_tessellator = [&](std::string const& who) {
         throw Error("the mistake '" + std::string(name_of(mistake.kind)) +
-                    "' is the tessellator's, which the Direct3D 10 path does not have");
+                    "' is the tessellator's, which " + who + " does not have");
+    };
+    bool const of_tessellator = mistake.kind == Mistake::Factors || mistake.kind == Mistake::Fold;
+    if (frame.direct3d10 && of_tessellator) needs_tessellator("the Direct3D 10 path");
     auto out = std::make_unique<MistakenPatches>(patches, mistake);
     // Throws where a draw has no place for it.
     CommandList const list = out->commands(surface_settings(frame));
+    if (of_tessellator)
+        list.for_each_surface_draw([&](Draw const& d) {
+            if (!d.pipeline.hull_shader) needs_tessellator("the scheme");
+        });
     if (!out->planted(list))
         throw Error("the mistake '" + std::string(name_of(mistake.kind)) +
                     "' has no place in the patches of face " +

@@ -29,9 +29,11 @@ std::size_t SharedEdges::Hash::operator()(MeshPoint const& p) const
 SharedEdges::SharedEdges(PatchMesh const& patches, FrameSettings const& frame, bool keep_triangles,
                          ThreadPool const& threads)
     : mesh_(patches.mesh().base()),
+      topology_(patches.mesh().base_topology()),
       eye_(frame.camera.eye),
       backward_(frame.camera.backward())
 {
+    if (patches.has_creases()) sharpness_.emplace(topology_);
     visit_surface(patches, frame, threads,
                   [&](SurfacePatch const& patch) { add(patch, keep_triangles); });
 }
@@ -99,6 +101,26 @@ std::string const& SharedEdges::edge_in_words(std::vector<SeenPoint> const& seen
     return words_[0];
 }
 
+std::uint8_t SharedEdges::side_of(MeshPoint const& point, std::uint32_t face) const
+{
+    if (!sharpness_ || point.kind == MeshPoint::Kind::Face) return 0;
+    auto const is_sharp = [&](HalfEdge h) { return sharpness_->edge(h) >= kInfinitelySharp; };
+    if (point.kind == MeshPoint::Kind::Edge) {
+        HalfEdge const h = topology_.find_edge(point.a, point.b);
+        return h != Topology::kNone && is_sharp(h) && topology_.face_of(h) != face;
+    }
+    // A side lies between two sharp edges of the ring, or one that is met twice.
+    auto const ring = topology_.ring(point.a);
+    std::uint8_t before = 0, all = 0;
+    bool met = false;
+    for (HalfEdge h : ring) {
+        all += is_sharp(h);
+        if (!met) before = all;
+        met = met || topology_.face_of(h) == face;
+    }
+    return topology_.is_boundary(point.a) || all == 0 ? before : std::uint8_t(before % all);
+}
+
 void SharedEdges::add(SurfacePatch const& patch, bool keep_triangles)
 {
     PatchPlace const& place = patch.place();
@@ -142,7 +164,7 @@ void SharedEdges::add(SurfacePatch const& patch, bool keep_triangles)
         }
         if (edges == 0) continue;
         SurfaceVertex const vertex = patch.vertex(i);
-        SeenPoint seen{place.face, number, {}, 1, 0};
+        SeenPoint seen{place.face, number, {}, 1, 0, side_of(point, place.face)};
         if (edges == 1) seen.edge = number_of_word(patch.kind().edges[std::size_t(last)]);
         for (int c = 0; c < 3; ++c) {
             auto const bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
@@ -158,8 +180,9 @@ void SharedEdges::add(SurfacePatch const& patch, bool keep_triangles)
 glm::vec3 SharedEdges::record(MeshPoint const& point, SeenPoint const& seen)
 {
     std::vector<SeenPoint>& all = points_[point];
-    auto const same = std::find_if(all.begin(), all.end(),
-                                   [&](SeenPoint const& s) { return s.bits == seen.bits; });
+    auto const same = std::find_if(all.begin(), all.end(), [&](SeenPoint const& s) {
+        return s.bits == seen.bits && s.side == seen.side;
+    });
     if (same != all.end()) {
         ++same->patches;
         if (!same->edge) same->edge = seen.edge;

@@ -5,9 +5,11 @@
 
 #include "analysis/ray_check.h"
 #include "pipeline/frame.h"
+#include "pipeline/mesh/sharpness.h"
 
 #include <cmath>
 #include <map>
+#include <optional>
 #include <unordered_map>
 
 namespace tessemu {
@@ -19,6 +21,8 @@ struct SeenPoint {
     std::array<std::uint32_t, 9> bits = {}; ///< smooth position, normal, displaced position
     int patches = 1;                        ///< that have the point on their outline
     std::uint8_t edge = 0;                  ///< see SharedEdges::edge_in_words
+    /// Of the infinitely sharp edges that the point lies on, where each side has a normal.
+    std::uint8_t side = 0;
 
     glm::vec3 displaced() const;
 };
@@ -86,10 +90,13 @@ private:
     void add(SurfacePatch const& patch, bool keep_triangles);
     void extend(glm::vec3 position);
     std::uint8_t number_of_word(std::string const& word);
+    std::uint8_t side_of(MeshPoint const& point, std::uint32_t face) const;
     /// Gives the point as the first patch has it.
     glm::vec3 record(MeshPoint const& point, SeenPoint const& seen);
 
     ControlMesh const& mesh_;
+    Topology const& topology_;
+    std::optional<Sharpness> sharpness_; ///< of a surface that has creases
     glm::dvec3 eye_, backward_;
     Points points_;
     std::map<MeshLine, Line> lines_;

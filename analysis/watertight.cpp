@@ -198,56 +198,75 @@ private:
     CheckedVerdict equal_bits(char const* name, std::size_t first) const
     {
         CheckedVerdict v{name, Verdict::Pass, not_compared(), 0, 0, {}};
-        std::size_t undefined = 0;
+        std::size_t undefined = 0, parted = 0;
         std::map<std::string, std::array<std::uint64_t, 2>> by_edge; // checked, failures
         for (MeshPoint const* p : order_) {
-            std::vector<SeenPoint> const& seen = surface_.points().at(*p);
-            int patches = 0;
-            for (SeenPoint const& s : seen) patches += s.patches;
-            if (patches < 2) continue;
-            bool const defined = std::any_of(
-                seen.begin(), seen.end(), [&](SeenPoint const& s) { return is_defined(s, first); });
-            // That no patch has a normal is no agreement on one, and no crack.
-            if (!defined && first == SeenPoint::kNormal) {
-                ++undefined;
-                continue;
-            }
-            ++v.checked;
-            std::string const& edge = surface_.edge_in_words(seen);
-            auto& of_edge = by_edge[edge];
-            ++of_edge[0];
-            if (!defined) {
-                ++of_edge[1];
-                CrackSite site;
-                set_place(site, mesh_, *p, seen.front().face, seen.back().face, edge);
-                site.text += ": it is not finite";
-                add(v, site);
-                continue;
-            }
-            for (std::size_t i = 1; i < seen.size(); ++i) {
-                std::size_t c = first;
-                while (c < first + 3 && seen[i].bits[c] == seen[0].bits[c]) ++c;
-                if (c == first + 3) continue;
-                ++of_edge[1];
-                CrackSite site;
-                set_place(site, mesh_, *p, seen[0].face, seen[i].face, edge);
-                site.component = int(c - first);
-                site.bits[0] = seen[0].bits[c], site.bits[1] = seen[i].bits[c];
-                site.ulp = ulp_distance(site.bits[0], site.bits[1]);
-                site.place = seen[0].displaced();
-                site.text += std::string(": ") + "xyz"[site.component] + " is " +
-                             hexadecimal(site.bits[0]) + " and " + hexadecimal(site.bits[1]) +
-                             ", " + std::to_string(site.ulp) + " ulp apart";
-                add(v, site);
-                break; // one failure a place
+            std::vector<SeenPoint> const& all = surface_.points().at(*p);
+            // Of a normal each side of infinitely sharp edges by itself.
+            std::map<std::uint8_t, std::vector<SeenPoint>> sides;
+            for (SeenPoint const& s : all)
+                sides[first == SeenPoint::kNormal ? s.side : 0].push_back(s);
+            parted += sides.size() > 1;
+            for (auto const& [side, seen] : sides) {
+                int patches = 0;
+                for (SeenPoint const& s : seen) patches += s.patches;
+                if (patches < 2) continue;
+                // That no patch has a normal is no agreement on one, and no crack.
+                if (first == SeenPoint::kNormal && !is_defined(seen, first)) {
+                    ++undefined;
+                    continue;
+                }
+                auto& [checked, failures] = by_edge[surface_.edge_in_words(seen)];
+                ++v.checked, ++checked;
+                failures += !compare(v, *p, seen, first);
             }
         }
         if (undefined)
             v.reason =
                 both(v.reason, counted(undefined, "point has a normal", "points have a normal") +
                                    " of length 0, or none, in all patches: left out");
+        if (parted)
+            v.reason = both(v.reason, counted(parted, "point", "points") +
+                                          " on infinitely sharp edges left out across them: each "
+                                          "side has its own normal");
         if (v.failures) v.reason = both(v.reason, in_words(by_edge));
         return settled(std::move(v), undefined ? "" : nothing_shared());
+    }
+
+    static bool is_defined(std::vector<SeenPoint> const& seen, std::size_t first)
+    {
+        return std::any_of(seen.begin(), seen.end(),
+                           [&](SeenPoint const& s) { return is_defined(s, first); });
+    }
+
+    // Whether all that was seen of a point has the same bits, and numbers.
+    bool compare(CheckedVerdict& v, MeshPoint const& at, std::vector<SeenPoint> const& seen,
+                 std::size_t first) const
+    {
+        std::string const& edge = surface_.edge_in_words(seen);
+        CrackSite site;
+        if (!is_defined(seen, first)) {
+            set_place(site, mesh_, at, seen.front().face, seen.back().face, edge);
+            site.text += ": it is not finite";
+            add(v, site);
+            return false;
+        }
+        for (SeenPoint const& other : seen) {
+            std::size_t c = first;
+            while (c < first + 3 && other.bits[c] == seen[0].bits[c]) ++c;
+            if (c == first + 3) continue;
+            set_place(site, mesh_, at, seen[0].face, other.face, edge);
+            site.component = int(c - first);
+            site.bits[0] = seen[0].bits[c], site.bits[1] = other.bits[c];
+            site.ulp = ulp_distance(site.bits[0], site.bits[1]);
+            site.place = seen[0].displaced();
+            site.text += std::string(": ") + "xyz"[site.component] + " is " +
+                         hexadecimal(site.bits[0]) + " and " + hexadecimal(site.bits[1]) + ", " +
+                         std::to_string(site.ulp) + " ulp apart";
+            add(v, site);
+            return false; // one failure a place
+        }
+        return true;
     }
 
     // How many points differ on which edges, where the scheme has words for some.

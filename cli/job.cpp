@@ -228,7 +228,7 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     check_request(o);
     Job job = open_job(o.model, o.shading, verb, make);
     FrameSettings& f = job.frame;
-    f.partitioning = o.partitioning;
+    f.partitioning = o.partitioning.value_or(f.partitioning);
     f.tess_factor = float(o.tess);
     if (o.vertex_cache) f.vertex_cache = *o.vertex_cache;
     f.direct3d10 = o.direct3d10;
@@ -242,7 +242,8 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
         h.inputs.emplace_back(name_of(heights), sha256_of(read_file(heights.image)));
     Config& c = h.config = config_of(o.model, job.surface.parameters);
     c.emplace_back("tess", o.tess);
-    c.emplace_back("partitioning", std::string(name_of(o.partitioning)));
+    if (o.model.scheme->info().tessellator)
+        c.emplace_back("partitioning", std::string(name_of(f.partitioning)));
     add_config(c, o.shading);
     if (o.vertex_cache) c.emplace_back("vertex_cache", name_of(*o.vertex_cache));
     if (o.direct3d10) c.emplace_back("direct3d", std::int64_t(10));
@@ -258,6 +259,9 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
 
 void set_picture(Job& job, PictureRequest const& o, SurfaceRequest const& surface)
 {
+    SchemeInfo const info = surface.model.scheme->info();
+    if (!info.tessellator && o.tess_edge.kind != AdaptiveFactors::Kind::None)
+        throw Error("--tess-edge: " + info.name + " has no tessellator that takes factors by edge");
     FrameSettings& f = job.frame;
     f.width = o.size.width;
     f.height = o.size.height;

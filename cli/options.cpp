@@ -115,6 +115,10 @@ Partitioning parse_partitioning(std::string const& text, std::string const& opti
     return *p;
 }
 
+constexpr char const* kPartitioningHelp =
+    "integer, pow2, fractional_odd, fractional_even; pow2 acts as integer, and 5 stays 5: rounding "
+    "to powers of two is the hull shader's part (R59)";
+
 DisplaceRequest::Heights parse_heights(std::string const& text, std::string const&)
 {
     using Kind = DisplaceRequest::Heights::Kind;
@@ -281,7 +285,8 @@ void add_options(Verb& verb, SurfaceRequest& o, NormalWords words)
     add_options(verb, o.model);
     verb.option("--tess", o.tess, parse_tess, "tess factor of every edge and inside, above 0 to 64",
                 "8");
-    add_partitioning(verb, o.partitioning);
+    verb.option("--partitioning", o.partitioning, parse_partitioning,
+                std::string(kPartitioningHelp) + " [fractional_odd]");
     add_options(verb, o.shading, words);
     verb.option("--displace", o.displace.heights, parse_heights,
                 "along the normal: studs, a pattern in space; or an image on the mesh's texture "
@@ -325,9 +330,7 @@ void add_options(Verb& verb, RunRequest& o)
 
 void add_partitioning(Verb& verb, Partitioning& partitioning)
 {
-    verb.option("--partitioning", partitioning, parse_partitioning,
-                "integer, pow2, fractional_odd, fractional_even; pow2 acts as integer, and 5 stays "
-                "5: rounding to powers of two is the hull shader's part (R59)",
+    verb.option("--partitioning", partitioning, parse_partitioning, kPartitioningHelp,
                 "fractional_odd");
 }
 
@@ -347,8 +350,22 @@ void add_level(Verb& verb, int& level, std::string const& about)
     verb.option("--level", level, whole(1, 6), about, "4");
 }
 
+namespace {
+void check_tessellator(SurfaceRequest const& o)
+{
+    SchemeInfo const info = o.model.scheme->info();
+    if (info.tessellator) return;
+    if (o.partitioning)
+        throw Error("--partitioning is the tessellator's, which " + info.name + " does not have");
+    if (o.direct3d10)
+        throw Error("--direct3d 10 is a path around the tessellator, which " + info.name +
+                    " does not have");
+}
+} // namespace
+
 void check_request(SurfaceRequest const& o)
 {
+    check_tessellator(o);
     if (o.displace.scale && o.displace.heights.kind == DisplaceRequest::Heights::Kind::None)
         throw Error("--displace-scale needs --displace");
     if (o.displace.wrap && o.displace.heights.kind != DisplaceRequest::Heights::Kind::Image)

@@ -57,7 +57,7 @@ struct SurfaceRequest {
     ModelRequest model;
     ShadingRequest shading;
     double tess = 0;
-    Partitioning partitioning = Partitioning::FractionalOdd;
+    std::optional<Partitioning> partitioning; ///< by default fractional_odd
     DisplaceRequest displace;
     AnimateRequest animate;
     bool direct3d10 = false;

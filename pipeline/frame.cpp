@@ -133,6 +133,16 @@ std::array<float, 3> color_of(PatchClass patch_class)
         return {0.66f, 0.54f, 0.86f};
     case PatchClass::Triangle:
         return {0.44f, 0.80f, 0.48f};
+    case PatchClass::Crease:
+        return {0.42f, 0.68f, 0.92f};
+    case PatchClass::Dart:
+        return {0.96f, 0.56f, 0.24f};
+    case PatchClass::ConvexCorner:
+        return {0.90f, 0.36f, 0.36f};
+    case PatchClass::ConcaveCorner:
+        return {0.72f, 0.30f, 0.62f};
+    case PatchClass::SemiSharp:
+        return {0.36f, 0.78f, 0.72f};
     default:
         return {0.88f, 0.45f, 0.50f};
     }

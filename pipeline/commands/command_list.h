@@ -23,7 +23,18 @@
 namespace tessemu {
 
 /// What a patch is, as pictures and figures tell patches apart.
-enum class PatchClass { RegularQuad, IrregularQuad, Triangle, Other };
+enum class PatchClass {
+    RegularQuad,
+    IrregularQuad,
+    Triangle,
+    Other,
+    // At tags, of schemes that honour them.
+    Crease, ///< or boundary
+    Dart,
+    ConvexCorner,
+    ConcaveCorner,
+    SemiSharp,
+};
 
 /// Patches of one shape: one domain shader, one number of control points.
 struct PatchKind {

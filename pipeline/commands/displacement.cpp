@@ -260,13 +260,11 @@ double Displacement::studs_slope(Ray const& ray) const
            3;
 }
 
-PatchEpilog make_patch_epilog(ControlMesh const& mesh, std::span<PatchPlace const> patches,
-                              SurfaceSettings const& settings)
+SurfaceEpilog make_surface_epilog(ControlMesh const& mesh, std::span<PatchPlace const> patches,
+                                  SurfaceSettings const& settings)
 {
     std::shared_ptr<Displacement const> const& displacement = settings.displacement;
-    if (!displacement)
-        return {bind_domain_epilog(ProjectionEpilog{settings.view_projection}, settings.machine),
-                {}};
+    if (!displacement) return {ProjectionEpilog{settings.view_projection}, {}};
     struct Memory {
         std::shared_ptr<Displacement const> displacement;
         std::vector<std::uint32_t> words;
@@ -283,7 +281,7 @@ PatchEpilog make_patch_epilog(ControlMesh const& mesh, std::span<PatchPlace cons
                                       "texture_coordinates"};
         epilog.coordinates.patches = {memory->words, kEpilogSlot + 2, "patch_corners"};
     }
-    return {bind_domain_epilog(epilog, settings.machine), memory};
+    return {epilog, memory};
 }
 
 } // namespace tessemu

@@ -10,6 +10,8 @@
 #include "pipeline/mesh/topology.h"
 #include "shaders_cpp/displacement.h"
 
+#include <variant>
+
 namespace tessemu {
 
 /// Heights from an image, rows from the top.
@@ -60,13 +62,13 @@ private:
     std::vector<std::uint32_t> split_start_; // of a face that is no quad: its quads' corners
 };
 
-struct PatchEpilog {
-    DomainEpilog shader;
+struct SurfaceEpilog {
+    std::variant<ProjectionEpilog, DisplacementEpilog> shader;
     std::shared_ptr<void const> memory; ///< what the shader's buffers view
 };
 
 /// Projection, or displacement and projection. `patches` of one shape, by primitive id, on `mesh`.
-PatchEpilog make_patch_epilog(ControlMesh const& mesh, std::span<PatchPlace const> patches,
-                              SurfaceSettings const& settings);
+SurfaceEpilog make_surface_epilog(ControlMesh const& mesh, std::span<PatchPlace const> patches,
+                                  SurfaceSettings const& settings);
 
 } // namespace tessemu

@@ -98,8 +98,9 @@ void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const&
         desc.domain_epilog =
             bind_domain_epilog(CurvedProjectionEpilog{settings.view_projection}, settings.machine);
     } else {
-        PatchEpilog epilog = make_patch_epilog(mesh.base(), d.patches, settings);
-        desc.domain_epilog = std::move(epilog.shader);
+        SurfaceEpilog epilog = make_surface_epilog(mesh.base(), d.patches, settings);
+        desc.domain_epilog = std::visit(
+            [&](auto const& e) { return bind_domain_epilog(e, settings.machine); }, epilog.shader);
         list.memory.push_back(std::move(epilog.memory));
     }
     desc.partitioning = settings.partitioning;

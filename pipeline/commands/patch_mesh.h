@@ -46,6 +46,8 @@ public:
     /// What the scheme could not honour, in the user's words.
     virtual std::vector<std::string> warnings() const { return {}; }
     virtual std::optional<AnotherWay> another_way() const { return {}; }
+    /// Whether the surface has a normal on each side of an infinitely sharp edge.
+    virtual bool has_creases() const { return false; }
 
 private:
     std::shared_ptr<RefinedMesh const> mesh_;

@@ -26,6 +26,7 @@ std::vector<std::unique_ptr<Scheme>> const& schemes()
         { Make make_pm; s.push_back(make_pm()); }
         { Make make_stam; s.push_back(make_stam()); }
         { Make make_biseptic; s.push_back(make_biseptic()); }
+        { Make make_bolz; s.push_back(make_bolz()); }
         { Make make_phong; s.push_back(make_phong()); }
         // clang-format on
         return s;

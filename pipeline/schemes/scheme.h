@@ -70,6 +70,9 @@ struct SchemeInfo {
     /// Parameters under which patches that meet give their shared points equal bits, where the
     /// defaults do not promise it: those of a scheme that draws as its paper does.
     std::vector<std::pair<std::string, std::string>> watertight_with = {};
+    /// Whether hull shader, tessellator and domain shader make its points. Otherwise it takes one
+    /// number of segments, no partitioning, no factors by edge and no Direct3D 10 path.
+    bool tessellator = true;
     /// Why it has no mean curvature to show; empty: it has (shaders_cpp/curvature.h).
     std::string no_curvature = "its domain shaders give no second derivatives";
 };

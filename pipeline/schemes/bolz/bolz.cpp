@@ -1,0 +1,422 @@
+// bolz: Bolz and Schroeder's tessellation by basis-function tables and pixel shaders, 2003.
+//
+//     control points as constants ─> positions, a quad a patch ─┐  float targets
+//                                 ─> normals, a quad a patch   ─┴─> vertices of an indexed draw
+//
+// The surface is the limit surface of the mesh's own rules, creases, darts and corners included
+// (docs/bolz03.md).
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/commands/displacement.h"
+#include "pipeline/schemes/bolz/grid.h"
+#include "pipeline/schemes/bolz/table_patches.h"
+#include "pipeline/schemes/scheme.h"
+#include "shaders_cpp/bolz/table_pixel_shaders.h"
+#include "shaders_cpp/bolz/table_vertex_shader.h"
+
+#include <algorithm>
+#include <map>
+
+namespace tessemu {
+
+namespace {
+
+constexpr int kMostLevels = 5; // that the tables have
+
+/// Where the patches of a frame are tessellated: cells of one target, level after level.
+struct Cells {
+    struct Cell {
+        int x, y;
+    };
+    std::vector<Cell> of_patch;
+    int width = 0, height = 0;
+
+    explicit Cells(std::vector<GridLevels> const& levels) : of_patch(levels.size())
+    {
+        std::array<std::size_t, kMostLevels + 1> count{};
+        std::size_t texels = 0;
+        for (GridLevels const& l : levels) {
+            ++count[l.inside];
+            texels += std::size_t(side(l.inside)) * std::size_t(side(l.inside));
+        }
+        // About as wide as high.
+        int wide = 1;
+        while (std::size_t(wide) * std::size_t(wide) < texels) ++wide;
+        for (int level = 0; level <= kMostLevels; ++level)
+            if (count[std::size_t(level)]) wide = std::max(wide, side(level));
+        wide = std::min(wide, ColorTarget::kMaxSize);
+        std::array<int, kMostLevels + 1> first{};
+        std::array<int, kMostLevels + 1> columns{};
+        std::uint64_t high = 0;
+        for (std::size_t level = 0; level <= kMostLevels; ++level) {
+            int const s = side(int(level));
+            columns[level] = wide / s;
+            first[level] = int(std::min<std::uint64_t>(high, INT32_MAX / 2));
+            if (count[level] == 0) continue;
+            std::size_t const in_row = std::size_t(columns[level]);
+            high += std::uint64_t((count[level] + in_row - 1) / in_row) * std::uint64_t(s);
+            width = std::max(width, s * int(std::min(in_row, count[level])));
+        }
+        if (high > std::uint64_t(ColorTarget::kMaxSize))
+            throw LimitError("texels down the target that patches are tessellated into (" +
+                                 std::to_string(levels.size()) +
+                                 " patches; fewer segments, or fewer steps of subdivision, would "
+                                 "do)",
+                             high, ColorTarget::kMaxSize);
+        height = int(high);
+        std::array<std::size_t, kMostLevels + 1> next{};
+        for (std::size_t p = 0; p < levels.size(); ++p) {
+            std::size_t const level = levels[p].inside, k = next[level]++,
+                              in_row = std::size_t(columns[level]);
+            int const s = side(int(level));
+            of_patch[p] = {int(k % in_row) * s, first[level] + int(k / in_row) * s};
+        }
+    }
+    static int side(int level) { return (1 << level) + 1; }
+};
+
+/// What the two passes of a frame read, patch by patch.
+struct Passes {
+    TablePatches const& tables;
+    Machine machine;
+    std::vector<GridLevels> levels;
+    Cells cells;
+    std::span<float const> constants; ///< [control point][4]
+    ColorTarget positions, normals;
+    std::array<VertexShader, kMostLevels + 1> quads; ///< by level
+
+    Passes(TablePatches const& t, Machine const& m, std::vector<GridLevels> l)
+        : tables(t),
+          machine(m),
+          levels(std::move(l)),
+          cells(levels),
+          positions(cells.width, cells.height, Format::R32G32B32A32_FLOAT),
+          normals(cells.width, cells.height, Format::R32G32B32A32_FLOAT)
+    {
+        for (int n = 0; n <= kMostLevels; ++n)
+            quads[std::size_t(n)] = bind_vertex_shader(PatchQuadVertexShader::of_level(n), machine);
+    }
+
+    Draw draw(std::size_t patch, PixelShader pixel_shader, ColorTarget& target,
+              char const* name) const
+    {
+        GridLevels const& l = levels[patch];
+        Draw out;
+        out.name = name;
+        out.pipeline.vertex_shader = quads[l.inside];
+        out.pipeline.pixel_shader = std::move(pixel_shader);
+        out.call.topology = PrimitiveTopology::TriangleStrip;
+        out.call.vertex_count = 4;
+        auto const& [x, y] = cells.of_patch[patch];
+        float const side = float(Cells::side(l.inside));
+        RasterTarget raster{{&target}, nullptr, {{float(x), float(y), side, side, 0, 1}}};
+        raster.rasterizer.cull = CullMode::None;
+        raster.depth_stencil.depth_enable = false;
+        out.target = std::move(raster);
+        return out;
+    }
+    Texture2D texture(std::vector<float> const& texels, TableLayout const& layout, Format format,
+                      int slot, char const* name) const
+    {
+        return {std::as_bytes(std::span(texels)),
+                format,
+                layout.width(),
+                layout.height(),
+                std::size_t(layout.width()),
+                slot,
+                name};
+    }
+};
+
+ConstantBuffer<float> points_of(Passes const& f, TablePatches::Patch const& p)
+{
+    return ConstantBuffer<float>(
+        f.constants.subspan(4 * std::size_t(p.first), 4 * std::size_t(p.count)));
+}
+
+/// The sums of a patch, in either order.
+struct OrderedBinding {
+    using Sums = OrderedSums;
+    static constexpr Format kFormat = Format::R32_FLOAT;
+    static Sums sums(Passes const& f, TablePatches::Patch const& p)
+    {
+        return {
+            points_of(f, p),
+            ConstantBuffer<float>(std::span(f.tables.offsets)
+                                      .subspan(2 * std::size_t(p.first), 2 * std::size_t(p.count))),
+            int(p.count)};
+    }
+};
+struct PackedBinding {
+    using Sums = PackedSums;
+    static constexpr Format kFormat = Format::R32G32B32A32_FLOAT;
+    static Sums sums(Passes const& f, TablePatches::Patch const& p)
+    {
+        return {points_of(f, p), f.tables.textures[p.type].layout, int(p.count)};
+    }
+};
+
+template <class Binding> void add_passes(CommandList& list, std::shared_ptr<Passes> const& frame)
+{
+    using Sums = typename Binding::Sums;
+    std::size_t const patches = frame->tables.patches.size();
+    list.commands.emplace_back(DrawBatch{
+        "positions", patches, [frame](std::size_t i) {
+            TablePatches::Patch const& p = frame->tables.patches[i];
+            TypeTextures const& t = frame->tables.textures[p.type];
+            TablePositionPixelShader<Sums> shader{
+                Binding::sums(*frame, p),
+                frame->texture(t.position, t.layout, Binding::kFormat, 0, "position_tables")};
+            return frame->draw(i, bind_pixel_shader(shader, frame->machine), frame->positions,
+                               "positions");
+        }});
+    list.commands.emplace_back(
+        DrawBatch{"normals", patches, [frame](std::size_t i) {
+                      TablePatches::Patch const& p = frame->tables.patches[i];
+                      TypeTextures const& t = frame->tables.textures[p.type];
+                      TableNormalPixelShader<Sums> shader{
+                          Binding::sums(*frame, p),
+                          frame->texture(t.du, t.layout, Binding::kFormat, 0, "tangent_tables_u"),
+                          frame->texture(t.dv, t.layout, Binding::kFormat, 1, "tangent_tables_v")};
+                      return frame->draw(i, bind_pixel_shader(shader, frame->machine),
+                                         frame->normals, "normals");
+                  }});
+}
+
+/// Normals at the patches' own corners.
+struct Corners {
+    std::span<float const> normals, shared, poles;
+};
+
+Corners add_corners(CommandList& list, TablePatches const& t, VertexSource const& positions,
+                    Machine const& machine)
+{
+    Corners out;
+    out.poles = add_pole_normals(list, t.poles, positions, machine);
+    std::size_t const corners = t.corners.size() / 3 - 1;
+    auto const normals = std::make_shared<std::vector<float>>(3 * corners);
+    list.memory.push_back(normals);
+    CornerNormalShader cs;
+    cs.corners = {t.corners, 0, "corners"};
+    cs.vertices = {t.corner_vertices, 1, "corner_vertices"};
+    cs.weights = {t.corner_weights, 2, "corner_weights"};
+    cs.positions = {positions.floats, 3, "positions"};
+    cs.faces = {{out.poles, 4, "pole_normals"}};
+    cs.normals = {*normals, 5, "corner_normals"};
+    cs.stride = positions.stride;
+    list.commands.emplace_back(
+        Dispatch{"corner normals", bind_compute_shader(cs, machine), groups_for(corners, 64)});
+    out.normals = *normals;
+    std::size_t const vertices = t.shared_first.size() - 1;
+    if (vertices == 0) return out;
+    auto const shared = std::make_shared<std::vector<float>>(3 * vertices);
+    list.memory.push_back(shared);
+    SharedNormalShader mean;
+    mean.first = {t.shared_first, 0, "first_sides"};
+    mean.corners = {t.shared_corners, 1, "sides"};
+    mean.normals = {*normals, 2, "corner_normals"};
+    mean.shared = {*shared, 3, "shared_normals"};
+    list.commands.emplace_back(
+        Dispatch{"shared normals", bind_compute_shader(mean, machine), groups_for(vertices, 64)});
+    out.shared = *shared;
+    return out;
+}
+
+/// Patches of one kind and one grid, which one draw shows.
+struct ShownPatches {
+    std::vector<PatchPlace> places;
+    std::vector<std::uint32_t> words; ///< [patch][TablePatchWords]
+};
+
+std::vector<std::uint32_t> words_of(TablePatches const& t, std::size_t patch, Passes const& frame)
+{
+    using W = TablePatchWords;
+    TablePatches::Patch const& p = t.patches[patch];
+    std::vector<std::uint32_t> out(W::kCount, W::kNone);
+    Cells::Cell const cell = frame.cells.of_patch[patch];
+    out[W::kX] = std::uint32_t(cell.x);
+    out[W::kY] = std::uint32_t(cell.y);
+    out[W::kCorner] = p.corner;
+    for (std::size_t k = 0; k < 4; ++k) out[std::size_t(W::kPole) + k] = p.poles[k];
+    out[W::kShared] = p.shared;
+    for (std::size_t e = 0; e < 2; ++e) {
+        if (p.across[e] == TablePatches::kNone) continue;
+        Cells::Cell const other = frame.cells.of_patch[p.across[e]];
+        std::size_t const at = std::size_t(W::kAcross) + 3 * e;
+        out[at] = std::uint32_t(other.x);
+        out[at + 1] = std::uint32_t(other.y);
+        out[at + 2] = 1u << frame.levels[p.across[e]].inside;
+    }
+    return out;
+}
+
+class BolzPatches final : public PatchMesh {
+public:
+    BolzPatches(std::shared_ptr<RefinedMesh const> refined, Parameters const& parameters,
+                BasisTableStore* store)
+        : PatchMesh(std::move(refined)),
+          order_(parameters.word("order") == "global" ? TableOrder::Global : TableOrder::Table),
+          hidden_(hidden_faces(mesh(), warnings_)),
+          basis_(mesh(), store),
+          tables_(mesh(), basis_, order_, hidden_)
+    {
+    }
+
+    CommandList commands(SurfaceSettings const& s) const override
+    {
+        if (s.adaptive_rule.kind != TessFactorRule::Kind::Uniform)
+            throw Error("bolz has no tessellator: its patches have one number of segments, or by "
+                        "adapt=D each its own");
+        CommandList list;
+        if (tables_.patches.empty()) return list;
+        VertexSource const positions = add_vertices(list, mesh(), s);
+        auto const frame = std::make_shared<Passes>(tables_, s.machine, levels(s));
+        auto const constants = std::make_shared<std::vector<float>>(4 * tables_.vertices.size());
+        list.memory.push_back(frame);
+        list.memory.push_back(constants);
+        frame->constants = *constants;
+        PatchConstantsShader cs;
+        cs.vertices = {tables_.vertices, 0, "patch_vertices"};
+        cs.positions = {positions.floats, 1, "positions"};
+        cs.constants = {*constants, 2, "patch_constants"};
+        cs.stride = positions.stride;
+        list.commands.emplace_back(Dispatch{"patch constants", bind_compute_shader(cs, s.machine),
+                                            groups_for(tables_.vertices.size(), 64)});
+        Corners const corners = add_corners(list, tables_, positions, s.machine);
+        if (order_ == TableOrder::Global)
+            add_passes<OrderedBinding>(list, frame);
+        else
+            add_passes<PackedBinding>(list, frame);
+        for (TablePatches::Kind const& k : tables_.kinds) add_surface(list, k, frame, corners, s);
+        list.memory.push_back(s.pose);
+        return list;
+    }
+
+    std::vector<PatchCount> patch_counts() const override
+    {
+        std::vector<PatchCount> out;
+        for (TablePatches::Kind const& k : tables_.kinds) {
+            PatchCount c{k.kind, k.count, 0, 0, 0};
+            std::vector<std::uint32_t> types;
+            for (std::uint32_t p = k.first; p < k.first + k.count; ++p)
+                types.push_back(tables_.patches[p].type);
+            std::sort(types.begin(), types.end());
+            types.erase(std::unique(types.begin(), types.end()), types.end());
+            c.types = types.size();
+            c.min_inputs = INT32_MAX;
+            for (std::uint32_t t : types) {
+                c.min_inputs = std::min(c.min_inputs, basis_.types()[t].points);
+                c.max_inputs = std::max(c.max_inputs, basis_.types()[t].points);
+            }
+            out.push_back(c);
+        }
+        return out;
+    }
+    std::vector<std::string> warnings() const override { return warnings_; }
+    bool has_creases() const override { return tables_.has_creases; }
+
+private:
+    std::vector<GridLevels> levels(SurfaceSettings const& s) const
+    {
+        int level = 0;
+        while (level <= kMostLevels && float(1 << level) < s.tess_factor) ++level;
+        if (level > kMostLevels)
+            throw Error("bolz: " + std::to_string(int(s.tess_factor)) +
+                        " segments along an edge of a patch, its tables have 32: a step of "
+                        "subdivision before it (--subdivide) doubles them");
+        auto const l = std::uint8_t(level);
+        return std::vector<GridLevels>(tables_.patches.size(), {l, {l, l, l, l}});
+    }
+
+    void add_surface(CommandList& list, TablePatches::Kind const& kind,
+                     std::shared_ptr<Passes> const& frame, Corners const& corners,
+                     SurfaceSettings const& s) const
+    {
+        std::map<GridLevels, ShownPatches> by_grid;
+        for (std::uint32_t p = kind.first; p < kind.first + kind.count; ++p) {
+            ShownPatches& shown = by_grid[frame->levels[p]];
+            TablePatches::Patch const& patch = tables_.patches[p];
+            shown.places.push_back(mesh().place(patch.face, int(patch.rotation)));
+            std::vector<std::uint32_t> const words = words_of(tables_, p, *frame);
+            shown.words.insert(shown.words.end(), words.begin(), words.end());
+        }
+        for (auto& [levels, patches] : by_grid) {
+            auto const shown = std::make_shared<ShownPatches>(std::move(patches));
+            auto const grid = std::make_shared<PatchGrid const>(make_patch_grid(levels));
+            list.memory.push_back(shown);
+            list.memory.push_back(grid);
+            Draw out;
+            out.name = kind.kind.name;
+            out.kind = kind.kind;
+            out.patches = shown->places;
+            out.grid = {grid, &grid->points};
+            SurfaceEpilog const epilog = make_surface_epilog(mesh().base(), shown->places, s);
+            list.memory.push_back(epilog.memory);
+            std::visit(
+                [&](auto const& e) {
+                    TableVertexShader<std::remove_cvref_t<decltype(e)>> vs;
+                    vs.positions = texture_of(frame->positions, 0, "positions");
+                    vs.normals = texture_of(frame->normals, 1, "normals");
+                    vs.corner_normals = {corners.normals, 2, "corner_normals"};
+                    vs.shared_normals = {corners.shared, 3, "shared_normals"};
+                    vs.poles = {{corners.poles, 4, "pole_normals"}};
+                    vs.patches = {shown->words, 5, "patches"};
+                    vs.places = {grid->places, 6, "grid_places"};
+                    vs.level = levels.inside;
+                    vs.has_poles = tables_.has_poles;
+                    vs.has_creases = tables_.has_creases;
+                    vs.epilog = e;
+                    out.pipeline.vertex_shader = bind_vertex_shader(vs, s.machine);
+                },
+                epilog.shader);
+            out.call.topology = PrimitiveTopology::TriangleList;
+            out.call.indices = std::span<std::uint32_t const>(grid->points.patch.indices);
+            out.call.instance_count = std::uint32_t(shown->places.size());
+            list.commands.emplace_back(std::move(out));
+        }
+    }
+
+    TableOrder order_;
+    std::vector<std::string> warnings_;
+    std::vector<char> hidden_;
+    MeshBasis basis_;
+    TablePatches tables_;
+};
+
+class Bolz final : public Scheme {
+public:
+    SchemeInfo info() const override
+    {
+        SchemeInfo info{"bolz", "BOLZ03", "2, 2.1, 3",
+                        "the limit surface with all its tags, from tables of basis functions by "
+                        "pixel shaders, up to 32 segments along an edge of a patch"};
+        info.takes.steps = 1;
+        info.takes.steps_with_triangles = info.takes.steps_with_polygons = 2;
+        info.takes.creases = info.takes.corners = true;
+        auto const words = [](char const* name, char const* meaning,
+                              std::vector<std::string> allowed) {
+            return SchemeParameter{name, meaning, 0, 0, 0, std::move(allowed)};
+        };
+        info.parameters = {
+            words("order", "of a patch's sums: one for the mesh, bit-exact, or that of its tables",
+                  {"global", "table"})};
+        info.watertight_with = {{"order", "global"}};
+        info.tessellator = false;
+        info.no_curvature = "its tables have no second derivatives";
+        return info;
+    }
+    std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
+                                     Parameters const& parameters) const override
+    {
+        return std::make_unique<BolzPatches>(std::move(mesh), parameters, nullptr);
+    }
+};
+
+} // namespace
+
+std::unique_ptr<Scheme> make_bolz()
+{
+    return std::make_unique<Bolz>();
+}
+
+} // namespace tessemu
