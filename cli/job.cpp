@@ -72,8 +72,9 @@ Config config_of(ModelRequest const& o, Parameters const& parameters)
     Config out{{"scheme", info.name}, {"subdivide", std::int64_t(o.build.subdivide)}};
     if (o.build.join) out.emplace_back("join", *o.build.join);
     auto const add = [&](SchemeParameter const& p) {
-        std::visit([&](auto const& value) { out.emplace_back(p.name, value); },
-                   parameters.values().at(p.name));
+        auto const found = parameters.values().find(p.name);
+        if (found == parameters.values().end()) return; // has no default
+        std::visit([&](auto const& value) { out.emplace_back(p.name, value); }, found->second);
     };
     for (SchemeParameter const& p : info.parameters) add(p);
     if (parameters.values().count(sort_parameter().name)) add(sort_parameter());
@@ -209,6 +210,17 @@ AdaptiveFactors factors_in_mesh(AdaptiveFactors factors, Placement const& placem
 
 } // namespace
 
+std::string in_words_of_levels(std::vector<std::uint64_t> const& levels)
+{
+    std::vector<std::string> parts;
+    for (std::size_t level = 0; level < levels.size(); ++level)
+        if (levels[level])
+            parts.push_back(fmt::format("{} of {} segment{}", levels[level], 1 << level,
+                                        level == 0 ? "" : "s"));
+    if (parts.empty()) return "";
+    return fmt::format("patches by their segments: {}\n", fmt::join(parts, ", "));
+}
+
 void keep_inputs(RunOutput const& out, SurfaceRequest const& o)
 {
     out.keep(o.model.model);
@@ -229,7 +241,13 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     Job job = open_job(o.model, o.shading, verb, make);
     FrameSettings& f = job.frame;
     f.partitioning = o.partitioning.value_or(f.partitioning);
-    f.tess_factor = float(o.tess);
+    f.tess_factor = float(o.tess.value_or(kDefaultTessFactor));
+    if (job.surface.patches) job.header.levels = job.surface.patches->level_counts();
+    bool const adaptive = !job.header.levels.empty();
+    if (adaptive && o.tess) {
+        job.header.warnings.push_back("--tess is not used: each patch has its own segments");
+        print_warning(job.header.warnings.back());
+    }
     if (o.vertex_cache) f.vertex_cache = *o.vertex_cache;
     f.direct3d10 = o.direct3d10;
     f.displacement = make_displacement(o, job);
@@ -241,7 +259,7 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     if (heights.kind == DisplaceRequest::Heights::Kind::Image)
         h.inputs.emplace_back(name_of(heights), sha256_of(read_file(heights.image)));
     Config& c = h.config = config_of(o.model, job.surface.parameters);
-    c.emplace_back("tess", o.tess);
+    if (!adaptive) c.emplace_back("tess", double(f.tess_factor));
     if (o.model.scheme->info().tessellator)
         c.emplace_back("partitioning", std::string(name_of(f.partitioning)));
     add_config(c, o.shading);

@@ -25,9 +25,12 @@ std::string allowed(SchemeParameter const& p)
 
 std::string line_of(SchemeParameter const& p)
 {
-    return fmt::format("    --set {}={}  {}: {}\n", p.name,
-                       p.words.empty() ? fmt::format("{}", p.default_value) : p.words[0],
-                       allowed(p), p.meaning);
+    std::string const value = !p.words.empty()  ? p.words[0]
+                              : p.default_value ? fmt::format("{}", *p.default_value)
+                                                : "NUMBER";
+    return fmt::format("    --set {}={}  {}{}: {}\n", p.name, value, allowed(p),
+                       p.words.empty() && !p.default_value ? ", by default not set" : "",
+                       p.meaning);
 }
 
 int list_schemes()

@@ -34,7 +34,7 @@ void add_quad(ControlMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t
 }
 
 // Vertices are the control points in their order.
-Piece control_piece(PatchType const& type)
+Piece control_piece(PatchType const& type, int cells)
 {
     VertexRing const& ring = type.corner;
     std::uint32_t const n = ring.faces, j = ring.position;
@@ -53,7 +53,7 @@ Piece control_piece(PatchType const& type)
     assert(next == std::uint32_t(type.points()));
     mesh.positions.resize(next);
     // No vertex is sharp because one face of it is in the piece.
-    mesh.boundary = BoundaryRule::EdgeOnly;
+    mesh.rules.boundary = BoundaryRule::EdgeOnly;
     if (ring.vertex > 0) mesh.corners.push_back({0, ring.vertex});
     for (std::uint32_t i = 0; i < ring.edge_count(); ++i)
         if (float const s = ring.edge(i); s > 0) mesh.creases.push_back({0, e(i), s});
@@ -66,12 +66,11 @@ Piece control_piece(PatchType const& type)
         unit[v] = 1;
         out.points.push_back(std::move(unit));
     }
-    constexpr int kCells = kTableSide - 1;
     out.places.resize(next);
     out.places[0] = {0, 0};
-    out.places[e(j)] = {kCells, 0};
-    out.places[f(j)] = {kCells, kCells};
-    out.places[e(j + 1)] = {0, kCells};
+    out.places[e(j)] = {cells, 0};
+    out.places[f(j)] = {cells, cells};
+    out.places[e(j + 1)] = {0, cells};
     out.of_patch.assign(mesh.faces(), 0);
     out.of_patch[j] = 1;
     return out;
@@ -104,8 +103,7 @@ Piece refined(Piece const& piece)
         places[quad[3]] = middle(d, a);
     }
     Piece out;
-    out.mesh.boundary = fine.boundary;
-    out.mesh.crease_method = fine.crease_method;
+    out.mesh.rules = fine.rules;
     constexpr std::uint32_t kLeftOut = 0xffffffffu;
     std::vector<std::uint32_t> number(points.size(), kLeftOut);
     for (std::uint32_t f = 0; f < fine.faces(); ++f) {
@@ -287,16 +285,18 @@ void set_directions(Around const& a, Limits<CatmullClark>& limits, Sample& out)
 
 } // namespace
 
-BasisTables make_basis_tables(PatchType const& type)
+BasisTables make_basis_tables(PatchType const& type, int steps)
 {
-    Piece piece = control_piece(type);
-    for (int s = 0; s < kTableSteps; ++s) piece = refined(piece);
+    int const cells = 1 << steps, side = cells + 1;
+    auto const samples = std::size_t(side) * std::size_t(side);
+    Piece piece = control_piece(type, cells);
+    for (int s = 0; s < steps; ++s) piece = refined(piece);
     Topology const topology(piece.mesh);
     Sharpness const sharpness(topology);
     Limits<CatmullClark> limits;
     BasisTables out;
     out.points = type.points();
-    auto const size = std::size_t(out.points) * kTableSamples;
+    auto const size = std::size_t(out.points) * samples;
     out.position.resize(size), out.du.resize(size), out.dv.resize(size);
     for (std::uint32_t v = 0; v < piece.points.size(); ++v) {
         Place const place = piece.places[v];
@@ -304,7 +304,7 @@ BasisTables make_basis_tables(PatchType const& type)
         Around a = around(piece, topology, sharpness, v);
         Sample s;
         s.position = limits.of(a.ring, a.sharp).position;
-        double h = 1.0 / (kTableSide - 1);
+        double h = 1.0 / cells;
         while (a.sharp.is_semi_sharp()) {
             a.ring = refined_ring<CatmullClark>(a.ring, a.sharp);
             a.sharp = a.sharp.after_step();
@@ -314,11 +314,11 @@ BasisTables make_basis_tables(PatchType const& type)
             set_directions(a, limits, s);
         else
             set_derivatives(a, h, s);
-        std::size_t const at = std::size_t(place.j) * kTableSide + std::size_t(place.i);
+        std::size_t const at = std::size_t(place.j) * std::size_t(side) + std::size_t(place.i);
         for (std::size_t k = 0; k < std::size_t(out.points); ++k) {
-            out.position[k * kTableSamples + at] = s.position[k];
-            out.du[k * kTableSamples + at] = s.du[k];
-            out.dv[k * kTableSamples + at] = s.dv[k];
+            out.position[k * samples + at] = s.position[k];
+            out.du[k * samples + at] = s.du[k];
+            out.dv[k * samples + at] = s.dv[k];
         }
     }
     return out;

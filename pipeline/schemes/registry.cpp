@@ -127,10 +127,10 @@ Parameters resolve_parameters(SchemeInfo const& info, ParameterTexts const& give
     all.push_back(sort_parameter());
     for (SchemeParameter const& p : all) known += (known.empty() ? "" : ", ") + p.name;
     for (SchemeParameter const& p : info.parameters) {
-        if (p.words.empty())
-            out.set(p.name, p.default_value);
-        else
+        if (!p.words.empty())
             out.set(p.name, p.words[0]);
+        else if (p.default_value)
+            out.set(p.name, *p.default_value);
     }
     for (auto const& [name, text] : given) {
         auto const p = std::find_if(all.begin(), all.end(),

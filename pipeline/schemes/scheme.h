@@ -23,7 +23,7 @@ namespace tessemu {
 /// A free choice that a user may set: a number within limits, or one of some words.
 struct SchemeParameter {
     std::string name, meaning;
-    double default_value = 0;
+    std::optional<double> default_value = 0; ///< none: it has no value unless it is given
     double min = -std::numeric_limits<double>::infinity();
     double max = std::numeric_limits<double>::infinity();
     std::vector<std::string> words = {}; ///< not empty: one of these, the first by default
@@ -35,6 +35,13 @@ public:
     using Value = std::variant<double, std::string>;
 
     double number(std::string const& name) const { return std::get<double>(values_.at(name)); }
+    /// Of one that has no default: none where it was not given.
+    std::optional<double> find_number(std::string const& name) const
+    {
+        auto const found = values_.find(name);
+        if (found == values_.end()) return {};
+        return std::get<double>(found->second);
+    }
     std::string const& word(std::string const& name) const
     {
         return std::get<std::string>(values_.at(name));
@@ -107,7 +114,8 @@ SchemeParameter const& sort_parameter();
 
 /// NAME, VALUE as a user wrote them.
 using ParameterTexts = std::vector<std::pair<std::string, std::string>>;
-/// The scheme's parameters, those not given at their defaults; sort_parameter() where it is given.
+/// The scheme's parameters, those not given at their defaults, where they have one; sort_parameter()
+/// where it is given.
 /// Throws Error that names the parameter, the value and what is allowed.
 Parameters resolve_parameters(SchemeInfo const& info, ParameterTexts const& given);
 
