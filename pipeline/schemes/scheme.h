@@ -36,7 +36,7 @@ public:
 
     double number(std::string const& name) const { return std::get<double>(values_.at(name)); }
     /// Of one that has no default: none where it was not given.
-    std::optional<double> find_number(std::string const& name) const
+    std::optional<double> number_if_given(std::string const& name) const
     {
         auto const found = values_.find(name);
         if (found == values_.end()) return {};

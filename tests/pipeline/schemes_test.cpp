@@ -54,11 +54,11 @@ TEST(SchemeParameters, DefaultsAreTheNumberAndTheFirstWord)
 TEST(SchemeParameters, OneWithoutADefaultHasNoValueUnlessItIsGiven)
 {
     Parameters const without = resolve_parameters(Sample().info(), {});
-    EXPECT_FALSE(without.find_number("reach"));
+    EXPECT_FALSE(without.number_if_given("reach"));
     EXPECT_EQ(without.values().count("reach"), 0u);
     Parameters const with = resolve_parameters(Sample().info(), {{"reach", "2.5"}});
-    EXPECT_EQ(with.find_number("reach"), 2.5);
-    EXPECT_EQ(with.find_number("gain"), 0.5);
+    EXPECT_EQ(with.number_if_given("reach"), 2.5);
+    EXPECT_EQ(with.number_if_given("gain"), 0.5);
     EXPECT_EQ(refusal({{"reach", "-1"}}),
               "sample: reach is '-1', it must be a number from 0 to 8");
 }

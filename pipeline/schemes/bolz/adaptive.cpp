@@ -27,8 +27,7 @@ public:
         for (std::size_t p = 0; p < nets_.size(); ++p) {
             BasisPatch const& patch = basis.patches()[drawn[p].patch];
             auto& deviation = deviations_[patch.type];
-            if (!deviation)
-                deviation = std::make_unique<PatchDeviation>(basis.types()[patch.type].type);
+            if (!deviation) deviation = std::make_unique<PatchDeviation>(basis.types()[patch.type]);
             of_patch_[p] = deviation.get();
             points.clear();
             for (int k = 0; k < basis.types()[patch.type].points; ++k)

@@ -263,7 +263,7 @@ public:
           basis_(mesh(), store),
           tables_(mesh(), basis_, order_, hidden_)
     {
-        if (auto const distance = parameters.find_number("adapt")) adapt(*distance);
+        if (auto const distance = parameters.number_if_given("adapt")) adapt(*distance);
     }
 
     CommandList commands(SurfaceSettings const& s) const override

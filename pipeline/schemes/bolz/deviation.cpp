@@ -24,19 +24,14 @@ struct Angle {
     int turns, parts;
 };
 
-// Between neighbouring edges of the ring.
-Angle angle_of(PatchType const& type)
+// Between neighbouring edges of a ring.
+Angle angle_of(VertexRing const& ring)
 {
-    int const n = type.corner.faces;
-    if (type.corner.closed) return {2, n};
-    switch (type.family()) {
-    case PatchFamily::ConcaveCorner:
-        return {3, 2 * n};
-    case PatchFamily::ConvexCorner: // one face: a right angle; many: less than pi
-        return {1, n + 1};
-    default:
-        return {1, n};
-    }
+    int const n = ring.faces;
+    if (ring.closed) return {2, n};
+    if (ring.vertex == 0) return {1, n};
+    // Of a corner: one face has a right angle, many less than pi.
+    return ring.concave ? Angle{3, 2 * n} : Angle{1, n + 1};
 }
 
 double cross(Point a, Point b)
@@ -131,19 +126,21 @@ FromEdge from_edge(int edge, int segments, int x, int y)
 
 } // namespace
 
-std::vector<glm::dvec2> chart_of(PatchType const& type)
+std::vector<glm::dvec2> chart_of(PatchType const& type, std::span<std::uint16_t const> beyond)
 {
     // With lambda the eigenvalue of the ring of edges at (cos, sin) j theta, C = cos(theta/2): a face
     // between two edges lies at 4/(C + sqrt(C^2 + 4)), and the points beyond follow from
     // lambda X = the rule of X's vertex or edge.
     VertexRing const& ring = type.corner;
-    auto const [turns, parts] = angle_of(type);
+    auto const [turns, parts] = angle_of(ring);
     double const c = cos_pi(turns, 2 * parts), root = std::sqrt(c * c + 4);
     double const lambda = (2 + c * c + c * root) / 8, face = 4 / (c + root);
-    auto const e = [&](int j) { return Point(cos_pi(turns * j, parts), sin_pi(turns * j, parts)); };
-    auto const f = [&](int j) {
-        int const at = turns * (2 * j + 1);
-        return face * Point(cos_pi(at, 2 * parts), sin_pi(at, 2 * parts));
+    auto const e = [&, t = turns, n = parts](int j) {
+        return Point(cos_pi(t * j, n), sin_pi(t * j, n));
+    };
+    auto const f = [&, t = turns, n = parts](int j) {
+        int const at = t * (2 * j + 1);
+        return face * Point(cos_pi(at, 2 * n), sin_pi(at, 2 * n));
     };
     int const p = ring.position;
     double const s = 1 / (16 * lambda - 1);
@@ -169,21 +166,58 @@ std::vector<glm::dvec2> chart_of(PatchType const& type)
     out.insert(out.end(), {x20, x21, x22, x12, x02});
     if (type.has_lower()) out.push_back(beside(p, p - 1, p - 1));
     if (type.has_left()) out.push_back(beside(p + 1, p + 1, p + 2));
+    if (beyond.empty()) return out;
+    std::vector<PatchType::BeyondPoint> const points = type.beyond_points();
+    for (std::uint16_t number : beyond) {
+        PatchType::BeyondPoint const& x = points[number];
+        // The vertex, and the ends of the edges on both sides of the face that looks at it.
+        std::array<Point, 3> const known =
+            x.vertex == PatchType::RightVertex      ? std::array{x20, x21, e(p)}
+            : x.vertex == PatchType::DiagonalVertex ? std::array{x22, x12, x21}
+                                                    : std::array{x02, e(p + 1), x12};
+        VertexRing const& around = *type.beyond[std::size_t(x.vertex)];
+        Angle const angle = angle_of(around);
+        int const steps = int(x.index) - around.position;
+        auto const edge = [&](int j) { // so many edges on from the first of both
+            double const sine = sin_pi(angle.turns, angle.parts);
+            if (std::abs(sine) < 0.1) return Point(0); // a half turn, or nearly
+            double const first = sin_pi(angle.turns * (1 - j), angle.parts) / sine,
+                         second = sin_pi(angle.turns * j, angle.parts) / sine;
+            return first * (known[1] - known[0]) + second * (known[2] - known[0]);
+        };
+        out.push_back(known[0] + (x.is_face ? edge(steps) + edge(steps + 1) : edge(steps)));
+    }
     return out;
 }
 
-PatchDeviation::PatchDeviation(PatchType const& type)
-    : points_(type.points()),
-      chart_(chart_of(type))
+PatchDeviation::PatchDeviation(PatchTypeTables const& tables)
+    : points_(tables.points),
+      chart_(std::size_t(tables.points))
 {
     std::size_t const n = std::size_t(points_), samples = std::size_t(kSide) * kSide;
-    BasisTables const tables = make_basis_tables(type, kSampleLevel);
+    PatchType const& type = tables.type;
+    BasisTables const finer = make_basis_tables(type, kSampleLevel);
+    std::vector<Point> const chart = chart_of(type, finer.beyond);
     weights_.resize(n * samples);
+    for (std::size_t k = 0; k < chart.size(); ++k) {
+        auto const own = std::size_t(type.points());
+        std::size_t at = k;
+        if (k >= own) {
+            auto const& beyond = tables.beyond;
+            auto const found = std::find(beyond.begin(), beyond.end(), finer.beyond[k - own]);
+            if (found == beyond.end()) continue; // roundings of 0
+            at = own + std::size_t(found - beyond.begin());
+        }
+        std::size_t const i = tables.point_of[at];
+        chart_[i] = chart[k];
+        for (std::size_t q = 0; q < samples; ++q)
+            weights_[q * n + i] += finer.position[k * samples + q];
+    }
     samples_.resize(samples);
     for (std::size_t q = 0; q < samples; ++q) {
         double sum = 0;
         for (std::size_t i = 0; i < n; ++i) {
-            double const b = weights_[q * n + i] = tables.position[i * samples + q];
+            double const b = weights_[q * n + i];
             samples_[q] += b * chart_[i];
             sum += std::abs(b);
         }

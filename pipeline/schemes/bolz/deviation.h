@@ -20,7 +20,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pipeline/basis_tables/patch_type.h"
+#include "pipeline/basis_tables/symmetry.h"
 #include "pipeline/schemes/bolz/grid.h"
 
 #include <glm/vec2.hpp>
@@ -34,7 +34,9 @@ namespace tessemu {
 /// Control points' places in the plane: a ring at equal angles around (0,0), those of a sector from
 /// one sharp edge to the other, whose points are the eigenvectors of the step of subdivision that
 /// four regular faces around the other corners make. Of a regular patch it is the grid.
-std::vector<glm::dvec2> chart_of(PatchType const& type);
+/// \param beyond  control points behind those of PatchType::points(), by number in beyond_points():
+///                in the ring of their vertex, at equal angles and bent to what is known of it
+std::vector<glm::dvec2> chart_of(PatchType const& type, std::span<std::uint16_t const> beyond = {});
 
 /// The bounds of a patch type.
 class PatchDeviation {
@@ -43,7 +45,8 @@ public:
     /// Samples that bounds are for: twice as fine as the finest grid, so that it has a bound too.
     static constexpr int kSampleLevel = kMostLevel + 1;
 
-    explicit PatchDeviation(PatchType const& type);
+    /// \param tables  say which control points there are; their weights are made anew
+    explicit PatchDeviation(PatchTypeTables const& tables);
 
     /// What the bounds know of a patch.
     struct Net {
@@ -51,7 +54,7 @@ public:
         std::vector<double> residual; ///< lengths of the R_i
         double rounding = 0;          ///< what single precision may add, see docs/adaptive.md
     };
-    /// \param points  in the order of PatchType::points()
+    /// \param points  in the order of the tables
     Net net_of(std::span<glm::dvec3 const> points) const;
 
     /// No sample lies further from the triangles of a regular grid of 2^level segments.
