@@ -15,7 +15,7 @@ constexpr int kMost = PatchDeviation::kMostLevel;
 class Levels {
 public:
     Levels(std::span<DrawnPatch const> drawn, MeshBasis const& basis, ControlMesh const& mesh,
-           double distance)
+           double distance, glm::dvec3 origin)
         : drawn_(drawn),
           deviations_(basis.types().size()),
           of_patch_(drawn.size()),
@@ -33,7 +33,7 @@ public:
             for (int k = 0; k < basis.types()[patch.type].points; ++k)
                 points.emplace_back(
                     mesh.positions[basis.points()[patch.first_point + std::uint32_t(k)]]);
-            nets_[p] = deviation->net_of(points);
+            nets_[p] = deviation->net_of(points, origin);
             while (bound(p) > distance && inside_[p] < kMost) ++inside_[p];
             // Finer neighbours are no help to a patch that is beyond it at all levels.
             distances_[p] = std::max(distance, bound(p));
@@ -100,9 +100,9 @@ private:
 } // namespace
 
 AdaptiveLevels adaptive_levels(std::span<DrawnPatch const> drawn, MeshBasis const& basis,
-                               ControlMesh const& mesh, double distance)
+                               ControlMesh const& mesh, double distance, glm::dvec3 origin)
 {
-    Levels levels(drawn, basis, mesh, distance);
+    Levels levels(drawn, basis, mesh, distance, origin);
     levels.settle();
     AdaptiveLevels out;
     for (std::size_t p = 0; p < drawn.size(); ++p) {

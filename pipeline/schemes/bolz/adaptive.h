@@ -30,7 +30,9 @@ struct AdaptiveLevels {
 ///
 /// \param mesh      at rest
 /// \param distance  in the mesh's unit of length, above 0
+/// \param origin    what is taken off the control points before they are summed
 AdaptiveLevels adaptive_levels(std::span<DrawnPatch const> drawn, MeshBasis const& basis,
-                               ControlMesh const& mesh, double distance);
+                               ControlMesh const& mesh, double distance,
+                               glm::dvec3 origin = glm::dvec3(0));
 
 } // namespace tessemu

@@ -230,7 +230,8 @@ PatchDeviation::PatchDeviation(PatchTypeTables const& tables)
     fit_ = affine_fit(chart_, weight);
 }
 
-PatchDeviation::Net PatchDeviation::net_of(std::span<glm::dvec3 const> points) const
+PatchDeviation::Net PatchDeviation::net_of(std::span<glm::dvec3 const> points,
+                                           glm::dvec3 origin) const
 {
     std::size_t const n = std::size_t(points_);
     std::array<glm::dvec3, 3> affine{};
@@ -243,7 +244,7 @@ PatchDeviation::Net PatchDeviation::net_of(std::span<glm::dvec3 const> points) c
     for (std::size_t i = 0; i < n; ++i) {
         glm::dvec3 const flat = affine[0] + chart_[i].x * affine[1] + chart_[i].y * affine[2];
         out.residual.push_back(glm::length(points[i] - flat));
-        largest = std::max(largest, glm::length(points[i]));
+        largest = std::max({largest, glm::length(points[i]), glm::length(points[i] - origin)});
     }
     out.rounding = 2 * reach_ * double(2 * points_ + 8) * 0x1p-24 * largest;
     return out;

@@ -55,7 +55,8 @@ public:
         double rounding = 0;          ///< what single precision may add, see docs/adaptive.md
     };
     /// \param points  in the order of the tables
-    Net net_of(std::span<glm::dvec3 const> points) const;
+    /// \param origin  what is taken off the control points before they are summed
+    Net net_of(std::span<glm::dvec3 const> points, glm::dvec3 origin = glm::dvec3(0)) const;
 
     /// No sample lies further from the triangles of a regular grid of 2^level segments.
     double bound(Net const& net, int level) const;
