@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include <memory>
+#include <optional>
 
 namespace tessemu {
 
@@ -34,20 +35,40 @@ Ring<Vec> ring_of(Topology const& t, std::vector<Vec> const& x, std::uint32_t v)
     return out;
 }
 
+// The same after another step, from its new points.
+Ring<Vec> ring_after_step(Topology const& t, EdgeNumbers const& edges, std::vector<Vec> const& next,
+                          std::uint32_t v)
+{
+    auto const faces = t.ring(v);
+    std::size_t const first_edge = t.mesh().faces(), first_vertex = first_edge + edges.size();
+    Ring<Vec> out{next[first_vertex + v], {}, {}};
+    for (HalfEdge h : faces) {
+        out.edge.push_back(next[first_edge + edges[h]]);
+        out.face.push_back(next[t.face_of(h)]);
+    }
+    if (t.is_boundary(v)) out.edge.push_back(next[first_edge + edges[t.previous(faces.back())]]);
+    return out;
+}
+
 // Of a side of a vertex. Where the tangents are parallel, as two sharp edges in one line are, the
 // faces decide; and at a corner whose faces turn by more than half a circle they say which side of
-// the plane of its sharp edges is outside.
-Vec side_normal(Ring<Vec> const& ring, VertexRule rule, VertexLimit<Vec>::Side const& side)
+// the plane of its sharp edges is outside, unless Biermann's rules have. By those the edges of a
+// face alone on its side may lie in one line too.
+Vec side_normal(Ring<Vec> const& ring, RingSharpness const& sharp, VertexRule rule,
+                VertexLimit<Vec>::Side const& side)
 {
     auto const& [a, b] = side.tangents;
     Vec const n = cross(a, b);
     Vec faces(0);
     for (std::size_t j = side.first_face; j < side.first_face + side.faces; ++j) {
         std::size_t const f = j % ring.faces();
-        faces += cross(ring.edge[f] - ring.vertex, ring.edge_after(f) - ring.vertex);
+        faces += sharp.biermann
+                     ? cross(ring.face[f] - ring.vertex, ring.edge_after(f) - ring.edge[f])
+                     : cross(ring.edge[f] - ring.vertex, ring.edge_after(f) - ring.vertex);
     }
     if (!(dot(n, n) > 0x1p-32 * dot(a, a) * dot(b, b))) return unit_or_zero(faces);
-    return unit_or_zero(rule == VertexRule::Corner && dot(n, faces) < 0 ? -n : n);
+    bool const turns = rule == VertexRule::Corner && !sharp.biermann && dot(n, faces) < 0;
+    return unit_or_zero(turns ? -n : n);
 }
 
 // Poles have the mean of the faces around, as the schemes have it.
@@ -101,6 +122,15 @@ void LimitSurface::add_points(Topology const& t, std::vector<Vec> const& x)
     std::vector<Vec> const of_pole = pole_normals(poles, x);
     Limits<CatmullClark> limits;
     RingSharpness sharp;
+    // By Biermann's rules a vertex depends on those around it in the next step: how they lean and
+    // flatten.
+    bool const biermann = mesh.rules.sectors == SectorRules::Biermann;
+    std::vector<Vec> next;
+    std::optional<EdgeNumbers> edges;
+    if (biermann) {
+        next = refined_points<CatmullClark, Vec>(t, sharpness, x);
+        edges.emplace(t);
+    }
     quads_.resize(mesh.faces());
     auto const set_corner = [&](HalfEdge h, std::size_t point) {
         quads_[t.face_of(h)][h - mesh.face_start[t.face_of(h)]] = std::uint32_t(point);
@@ -108,7 +138,7 @@ void LimitSurface::add_points(Topology const& t, std::vector<Vec> const& x)
     for (std::uint32_t v = 0; v < x.size(); ++v) {
         auto const ring = t.ring(v);
         if (ring.empty()) continue;
-        if (sharpness.is_plain(v)) { // nearly all: no ring is copied
+        if (sharpness.is_plain(v) && !biermann) { // nearly all: no ring is copied
             auto const edge = [&](std::size_t j) -> Vec const& {
                 return x[t.vertex_of(t.next(ring[j]))];
             };
@@ -121,13 +151,15 @@ void LimitSurface::add_points(Topology const& t, std::vector<Vec> const& x)
             normal_.push_back(unit_or_zero(cross(a, b)));
         } else {
             sharpness.around(v, sharp);
-            Ring<Vec> const around = ring_of(t, x, v);
+            if (biermann) sharp = sharp.after_step();
+            Ring<Vec> const around =
+                biermann ? ring_after_step(t, *edges, next, v) : ring_of(t, x, v);
             VertexLimit<Vec> const limit = limits.of(around, sharp);
             for (auto const& side : limit.sides) {
                 for (std::size_t j = 0; j < side.faces; ++j)
                     set_corner(ring[(side.first_face + j) % ring.size()], position_.size());
                 position_.push_back(limit.position);
-                normal_.push_back(side_normal(around, limit.rule, side));
+                normal_.push_back(side_normal(around, sharp, limit.rule, side));
             }
         }
         std::uint32_t const pole = poles.at(v);

@@ -1,8 +1,8 @@
 // The limit surface of Catmull-Clark subdivision on a dyadic grid: refinement in double, then limit
 // masks, with creases, corners, darts and boundaries as the mesh's tags have them.
 //
-// Rules are OpenSubdiv's (docs/compare.md says what the reference is for each tag; formulas:
-// docs/math/subdivision.md, 1.6 and 1.7).
+// Rules are the mesh's, OpenSubdiv's or Biermann's (docs/compare.md says what the reference is for
+// each tag; formulas: docs/math/subdivision.md, 1.6, 1.7, 5.2 and 5.3).
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once

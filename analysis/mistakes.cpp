@@ -355,6 +355,7 @@ public:
         return list;
     }
     std::vector<PatchCount> patch_counts() const override { return right_.patch_counts(); }
+    bool has_creases() const override { return right_.has_creases(); }
     std::vector<std::string> warnings() const override { return right_.warnings(); }
 
     /// Whether a draw or a table has the mistake.

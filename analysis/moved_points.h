@@ -32,6 +32,7 @@ public:
     /// Throws Error where a draw writes neither ShadedVertex nor DisplacedVertex records.
     CommandList commands(SurfaceSettings const& settings) const override;
     std::vector<PatchCount> patch_counts() const override { return patches_.patch_counts(); }
+    bool has_creases() const override { return patches_.has_creases(); }
     std::vector<std::string> warnings() const override { return patches_.warnings(); }
 
 private:

@@ -393,12 +393,12 @@ private:
         std::uint64_t const confirmed = v.failures;
         if (past == v.checked) v.checked = 0; // all pass a surface that is a line: no word about it
         std::string pictures;
-        // Instances number their triangles; through cracks that parity opened the picture shows
-        // what lies behind.
-        if (!s_.frame.direct3d10 && s_.parity == 0) {
-            VisibilityCheck const c =
-                check_visibility(surface_.rays(), surface_.face_of_triangle(), visible_faces(),
-                                 s_.frame.camera, s_.frame.width, s_.frame.height, threads_);
+        // Through cracks that parity opened the picture shows what lies behind.
+        CommandList list = frame_commands(patches_, s_.frame, seen_surface(s_.frame));
+        if (list.primitives_are_patches() && s_.parity == 0) {
+            VisibilityCheck const c = check_visibility(
+                surface_.rays(), surface_.face_of_triangle(), visible_faces(std::move(list)),
+                s_.frame.camera, s_.frame.width, s_.frame.height, threads_);
             v.checked += c.pixels;
             for (auto const& pixel : c.unexplained) {
                 CrackSite site;
@@ -427,7 +427,7 @@ private:
     }
 
     /// The face that each pixel shows, -1 for none.
-    std::vector<std::int64_t> visible_faces() const
+    std::vector<std::int64_t> visible_faces(CommandList list) const
     {
         int const width = s_.frame.width, height = s_.frame.height;
         ColorTarget color(width, height, Format::R32G32B32A32_FLOAT);
@@ -436,7 +436,6 @@ private:
         depth.clear(1, 0, threads_);
         RasterTarget raster{{&color}, &depth, {{0, 0, float(width), float(height), 0, 1}}};
         raster.rasterizer.cull = CullMode::None;
-        CommandList list = frame_commands(patches_, s_.frame, seen_surface(s_.frame));
         std::vector<std::span<PatchPlace const>> draws;
         list.for_each_surface_draw([&](Draw& d) {
             d.pipeline.pixel_shader =

@@ -91,9 +91,9 @@ std::string closing_hint(SchemeInfo const& info, Parameters const& parameters)
 {
     for (auto const& [name, value] : info.watertight_with)
         if (parameters.word(name) != value)
-            return fmt::format("{} as its paper draws it is not watertight: --set {}={} gives "
-                               "shared edges equal bits",
-                               info.name, name, value);
+            return fmt::format("{} with {}={} is not watertight: --set {}={} gives shared edges "
+                               "equal bits",
+                               info.name, name, parameters.word(name), name, value);
     return "";
 }
 

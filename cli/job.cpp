@@ -5,6 +5,7 @@
 #include "io/image_reader.h"
 #include "io/input_file.h"
 #include "io/sha256.h"
+#include "io/table_cache.h"
 
 #include <fmt/format.h>
 
@@ -57,6 +58,12 @@ SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make, Warnin
     options.placement = model.placement;
     options.lines = std::move(model.lines);
     options.warn = warn;
+    bool const is_named = o.table_cache.has_value();
+    std::filesystem::path const folder =
+        is_named ? std::filesystem::path(*o.table_cache) : default_table_cache();
+    std::optional<BasisTableCache> cache;
+    if (!folder.empty() && folder != "none")
+        options.tables = &cache.emplace(folder, is_named ? warn : WarningSink());
     try {
         return make(*o.scheme, std::move(model.mesh), options);
     } catch (MeshError const& e) {
@@ -73,11 +80,11 @@ Config config_of(ModelRequest const& o, Parameters const& parameters)
     if (o.build.join) out.emplace_back("join", *o.build.join);
     auto const add = [&](SchemeParameter const& p) {
         auto const found = parameters.values().find(p.name);
-        if (found == parameters.values().end()) return; // has no default
+        if (found == parameters.values().end()) return; // was not given, and has no default
         std::visit([&](auto const& value) { out.emplace_back(p.name, value); }, found->second);
     };
     for (SchemeParameter const& p : info.parameters) add(p);
-    if (parameters.values().count(sort_parameter().name)) add(sort_parameter());
+    add(sort_parameter());
     return out;
 }
 

@@ -231,6 +231,12 @@ VertexCacheModel parse_vertex_cache(std::string const& text, std::string const&)
     return vertex_cache_from_name(text);
 }
 
+std::string parse_table_cache(std::string const& text, std::string const& option)
+{
+    if (text.empty()) throw Error(option + " is empty, it must be a folder or none");
+    return text;
+}
+
 } // namespace
 
 void add_options(Verb& verb, ModelRequest& o)
@@ -256,6 +262,9 @@ void add_mesh_options(Verb& verb, ModelRequest& o, std::string const& parameters
                 "of length; 0 joins equal positions; the lowest number stays");
     verb.flag("--strict", o.build.strict,
               "refuse a mesh that would have to be cut or lose faces, instead of warning");
+    verb.option("--table-cache", o.table_cache, parse_table_cache,
+                "folder where a scheme's basis-function tables are kept from run to run, or none "
+                "[$XDG_CACHE_HOME/tessemu, else ~/.cache/tessemu]");
 }
 
 void add_options(Verb& verb, ShadingRequest& o, NormalWords offered)

@@ -11,11 +11,13 @@
 
 namespace tessemu {
 
-/// MODEL, --scheme, --set, --subdivide, --join, --strict
+/// MODEL, --scheme, --set, --subdivide, --join, --strict, --table-cache
 struct ModelRequest {
     std::string model; ///< a path, "-" or a built-in's name
     Scheme const* scheme = nullptr;
     BuildOptions build;
+    /// Folder of basis-function tables; "none"; without a value the user's own.
+    std::optional<std::string> table_cache;
 };
 
 /// --normals, --contraction, --lanes

@@ -32,8 +32,9 @@ struct Report {
         VertexProgram const& vs = d.pipeline.vertex_shader.program();
         StageStatistics& v =
             add_stage("vertex_shader", d.counters.vertex.invocations, d.counters.vertex);
-        add_fetch(v, "vertices", ResourceKind::Vertex, d.counters.vertex.input_fetches,
-                  d.counters.vertex.input_touched, d.call.vertex_bytes());
+        if (std::size_t const bytes = d.call.vertex_bytes()) // or SV_VertexID is all
+            add_fetch(v, "vertices", ResourceKind::Vertex, d.counters.vertex.input_fetches,
+                      d.counters.vertex.input_touched, bytes);
         d.vertex_buffers.report(d.counters.vertex, v);
         v.output_bytes =
             d.counters.vertex.invocations * std::uint64_t(vs.output_floats()) * sizeof(float);

@@ -319,6 +319,10 @@ void encode(Format format, std::array<float, 4> const& value, std::byte* e, unsi
         for (float& c : v)
             if (c != c) c = std::bit_cast<float>(kCanonicalNan);
     if (f.bits[0] == 32) {
+        if (f.components == 4 && write_mask == 0xf) {
+            std::memcpy(e, v.data(), sizeof v);
+            return;
+        }
         for (std::size_t i = 0; i < f.components; ++i)
             if (write_mask >> i & 1) std::memcpy(e + 4 * i, &v[i], 4);
         return;

@@ -20,6 +20,7 @@
 #pragma once
 
 #include "emu/counted.h"
+#include "emu/record.h"
 
 #include <cassert>
 #include <compare>
@@ -41,6 +42,9 @@ public:
         Constant, ///< bits
         Fetch,    ///< of control points: a: view, b: record or vector, c: scalar of it
         Load,     ///< of a buffer: a: slot, b: index
+        Uniform,  ///< of a constant buffer: a: buffer, b: index
+        // a read of memory
+        Texel, ///< a component: a, b: nodes, the point in texels; c: component; bits: TexelSource
         // operations on nodes a, b, c
         Add,
         Sub,
@@ -64,8 +68,23 @@ public:
         std::uint32_t bits = 0; ///< of a constant, which may be -0 or NaN
         friend auto operator<=>(Node const&, Node const&) = default;
 
-        bool is_leaf() const { return op <= Op::Load; }
+        bool is_leaf() const { return op <= Op::Uniform; }
         float constant() const { return std::bit_cast<float>(bits); }
+        /// work(node) for each operand.
+        template <class Work> void for_each_operand(Work&& work) const
+        {
+            if (is_leaf()) return;
+            for (int id : {a, b, op == Op::Texel ? -1 : c})
+                if (id >= 0) work(id);
+        }
+    };
+    /// What a texel is read from.
+    struct TexelSource {
+        int slot, level = 0, slice = 0;
+        std::uint32_t bits() const
+        {
+            return std::uint32_t(slot) | std::uint32_t(level) << 8 | std::uint32_t(slice) << 16;
+        }
     };
 
     /// The node of an operation; an equal one is found again (a + b and b + a are equal).
@@ -84,6 +103,17 @@ public:
     }
     int fetch(int view, int unit, int scalar) { return intern({Op::Fetch, view, unit, scalar}); }
     int load(int slot, int index) { return intern({Op::Load, slot, index}); }
+    /// \param buffer  whose address tells constant buffers apart
+    int uniform(void const* buffer, int index)
+    {
+        int const number = int(constant_buffers_.size());
+        return intern(
+            {Op::Uniform, constant_buffers_.try_emplace(buffer, number).first->second, index});
+    }
+    int texel(TexelSource source, int x, int y, int component)
+    {
+        return intern({Op::Texel, x, y, component, source.bits()});
+    }
 
     /// A number for another view of control points.
     int new_view() { return views_++; }
@@ -105,11 +135,7 @@ public:
     FlopCount fused() const
     {
         std::vector<int> uses(nodes_.size());
-        for (Node const& n : nodes_) {
-            if (n.is_leaf()) continue;
-            for (int id : {n.a, n.b, n.c})
-                if (id >= 0) ++uses[std::size_t(id)];
-        }
+        for (Node const& n : nodes_) n.for_each_operand([&](int id) { ++uses[std::size_t(id)]; });
         FlopCount c = shared();
         for (Node const& n : nodes_) {
             if (n.op != Op::Add && n.op != Op::Sub) continue;
@@ -123,12 +149,13 @@ public:
         return c;
     }
 
-    /// Unique reads: a control point, a vector of one, an element of a buffer are one each.
+    /// Unique reads: one each for a control point, a vector of one, a buffer's element, a texel.
     std::uint64_t loads() const
     {
-        std::set<std::tuple<Op, int, int>> units;
+        std::set<std::tuple<Op, int, int, std::uint32_t>> units;
         for (Node const& n : nodes_)
-            if (n.op == Op::Fetch || n.op == Op::Load) units.emplace(n.op, n.a, n.b);
+            if (n.op == Op::Fetch || n.op == Op::Load || n.op == Op::Texel)
+                units.emplace(n.op, n.a, n.b, n.bits);
         return units.size();
     }
 
@@ -183,6 +210,7 @@ private:
 
     std::vector<Node> nodes_;
     std::map<Node, int> ids_;
+    std::map<void const*, int> constant_buffers_; // numbered as they are met
     FlopCount written_;
     int views_ = 0;
 };
@@ -205,6 +233,17 @@ struct Graph {
         return {g, g.fetch(view, unit, scalar)};
     }
     static Graph load(ExpressionGraph& g, int slot, int index) { return {g, g.load(slot, index)}; }
+    static Graph uniform(ExpressionGraph& g, void const* buffer, int index)
+    {
+        return {g, g.uniform(buffer, index)};
+    }
+    static float4<Graph> texel(ExpressionGraph& g, ExpressionGraph::TexelSource source, Graph x,
+                               Graph y)
+    {
+        int const column = x.in(g), row = y.in(g);
+        auto const component = [&](int c) { return Graph(g, g.texel(source, column, row, c)); };
+        return {component(0), component(1), component(2), component(3)};
+    }
 
     friend Graph operator+(Graph a, Graph b) { return binary(Op::Add, a, b); }
     friend Graph operator-(Graph a, Graph b) { return binary(Op::Sub, a, b); }

@@ -214,6 +214,37 @@ template <class T, class E, int N> auto load(Buffer<E> const& buffer, IntLanes<N
         return r;
 }
 
+/// Constants that an earlier command wrote, as CopyResource fills a constant buffer; what is known
+/// when the command is made is a member of the shader. A shader reads it by a uniform index: an
+/// operand of an instruction, so neither a fetch nor a slot.
+template <class E> class ConstantBuffer {
+public:
+    ConstantBuffer() = default; ///< nothing bound: reads give 0
+    /// Into a `recording` a shader that runs on Graph records its reads: a node for each constant.
+    /// Buffers are told apart by their address.
+    explicit ConstantBuffer(std::span<E const> elements, ExpressionGraph* recording = nullptr)
+        : elements_(elements),
+          recording_(recording)
+    {
+    }
+
+    std::span<E const> elements() const { return elements_; }
+    ExpressionGraph* recording() const { return recording_; }
+
+private:
+    std::span<E const> elements_;
+    ExpressionGraph* recording_ = nullptr;
+};
+
+/// constants[i], the same for every invocation; 0 when i is out of range (R141).
+template <class T> T load(ConstantBuffer<float> const& constants, std::int32_t i)
+{
+    std::span<float const> const e = constants.elements();
+    if constexpr (RecordingScalar<T>)
+        if (constants.recording()) return T::uniform(*constants.recording(), e.data(), i);
+    return T(storage_of<T>(std::size_t(i) < e.size() ? e[std::size_t(i)] : 0.0f));
+}
+
 /// Records of one patch (HLSL: InputPatch, OutputPatch, patch constants).
 ///
 /// Each [] is a counted fetch of a whole record. A record that is an array of vectors (it declares

@@ -47,11 +47,13 @@ ThreadPool::ThreadPool(int threads) : impl_(std::make_unique<Impl>())
     }
 }
 
+ThreadPool::ThreadPool(Caller) {}
+
 ThreadPool::~ThreadPool() = default;
 
 int ThreadPool::threads() const
 {
-    return impl_->arena.max_concurrency();
+    return impl_ ? impl_->arena.max_concurrency() : 1;
 }
 
 void ThreadPool::parallel_for(std::size_t n, std::function<void(std::size_t)> const& work) const

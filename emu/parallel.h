@@ -15,6 +15,9 @@ class ThreadPool {
 public:
     /// \param threads  1 or more, also more than the machine has; 0: all hardware threads
     explicit ThreadPool(int threads = 0);
+    /// The calling thread alone: for work inside an item of another pool's.
+    struct Caller {};
+    explicit ThreadPool(Caller);
     ~ThreadPool();
     ThreadPool(ThreadPool const&) = delete;
     ThreadPool& operator=(ThreadPool const&) = delete;
@@ -26,7 +29,7 @@ public:
 
 private:
     struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::unique_ptr<Impl> impl_; // none: the calling thread
 };
 
 } // namespace tessemu

@@ -33,8 +33,15 @@ RasterStages::RasterStages(RasterTarget const& target, GraphicsPipelineDesc cons
             r = r.intersect(i < target_.scissors.size() ? target_.scissors[i] : Rect{});
         setup_.bounds.push_back(r);
     }
-    tiles_x_ = (all.right + kTileSize - 1) >> kTileShift;
-    tiles_y_ = (all.bottom + kTileSize - 1) >> kTileShift;
+    Rect reached;
+    for (Rect const& r : setup_.bounds) {
+        if (r.empty()) continue;
+        reached = reached.empty()
+                      ? r
+                      : Rect{std::min(reached.left, r.left), std::min(reached.top, r.top),
+                             std::max(reached.right, r.right), std::max(reached.bottom, r.bottom)};
+    }
+    tiles_ = TileGrid::of(reached);
     streams_ = TriangleStream::supports(setup_, triangles);
 }
 
@@ -54,7 +61,7 @@ void RasterStages::stream(FrontEnd const& stages, AssembledPrimitives const& pri
 {
     auto w = memory.take(stages.tessellator_state());
     if (w->draw != memory.draws) {
-        w->stream.bind(setup_, assembler_, tiles_x_, tiles_y_);
+        w->stream.bind(setup_, assembler_, tiles_);
         w->draw = memory.draws;
     }
     FrontEndChunk& c = w->chunk;
@@ -84,9 +91,8 @@ void RasterStages::stream(FrontEnd const& stages, AssembledPrimitives const& pri
 
 void RasterStages::rasterize(std::span<Chunk> wave, ThreadPool const& threads)
 {
-    auto const tiles = std::size_t(tiles_x_ * tiles_y_);
     std::vector<std::size_t> busy;
-    for (std::size_t t = 0; t < tiles; ++t)
+    for (std::size_t t = 0; t < tiles_.size(); ++t)
         for (Chunk const& c : wave)
             if (c.bin_start[t] != c.bin_start[t + 1]) {
                 busy.push_back(t);
@@ -95,7 +101,8 @@ void RasterStages::rasterize(std::span<Chunk> wave, ThreadPool const& threads)
     std::vector<RasterCounters> tile_counters(busy.size());
     threads.parallel_for(busy.size(), [&](std::size_t i) {
         std::size_t const t = busy[i];
-        int const x = int(t) % tiles_x_ << kTileShift, y = int(t) / tiles_x_ << kTileShift;
+        int const x = (tiles_.x + int(t) % tiles_.columns) << kTileShift,
+                  y = (tiles_.y + int(t) / tiles_.columns) << kTileShift;
         DenormalMode const flush(DenormalMode::Flush);
         TileRasterizer raster(setup_, {x, y, x + kTileSize, y + kTileSize}, tile_counters[i]);
         for (Chunk const& c : wave)
@@ -109,7 +116,7 @@ void RasterStages::rasterize(std::span<Chunk> wave, ThreadPool const& threads)
 std::uint64_t RasterStages::merge(std::span<Chunk> wave, ThreadPool const& threads)
 {
     std::vector<std::size_t> busy;
-    for (std::size_t t = 0, tiles = std::size_t(tiles_x_ * tiles_y_); t < tiles; ++t)
+    for (std::size_t t = 0; t < tiles_.size(); ++t)
         if (std::any_of(wave.begin(), wave.end(),
                         [&](Chunk const& c) { return !c.fragments.empty(t); }))
             busy.push_back(t);
@@ -155,7 +162,7 @@ Rect RasterStages::extent() const
 
 void RasterStages::bin(Chunk& c) const
 {
-    auto const tiles = std::size_t(tiles_x_ * tiles_y_);
+    std::size_t const tiles = tiles_.size();
     int const samples = target_.samples();
     bool const wide = target_.rasterizer.multisample_enable;
     c.bin_entries.clear();
@@ -166,7 +173,7 @@ void RasterStages::bin(Chunk& c) const
         if (r.empty()) continue;
         for (int ty = r.top >> kTileShift; ty <= (r.bottom - 1) >> kTileShift; ++ty)
             for (int tx = r.left >> kTileShift; tx <= (r.right - 1) >> kTileShift; ++tx)
-                c.bin_entries.emplace_back(std::uint32_t(ty * tiles_x_ + tx), i);
+                c.bin_entries.emplace_back(std::uint32_t(tiles_.number(tx, ty)), i);
     }
     c.bin_start.assign(tiles + 1, 0);
     for (auto const& [tile, primitive] : c.bin_entries) ++c.bin_start[tile + 1];

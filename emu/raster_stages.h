@@ -103,7 +103,7 @@ private:
     StageBuffers buffers_;
     RasterSetup setup_;
     PrimitiveAssembler assembler_;
-    int tiles_x_ = 0, tiles_y_ = 0;
+    TileGrid tiles_;
     bool streams_ = false;
 };
 

@@ -17,6 +17,24 @@ namespace tessemu {
 
 inline constexpr int kTileShift = 7, kTileSize = 1 << kTileShift;
 
+/// The tiles of a target that a draw can reach.
+struct TileGrid {
+    int x = 0, y = 0, columns = 0, rows = 0; ///< the first one's column and row, and how many
+
+    /// \param reached  pixels
+    static TileGrid of(Rect const& reached)
+    {
+        if (reached.empty()) return {};
+        TileGrid g{reached.left >> kTileShift, reached.top >> kTileShift, 0, 0};
+        g.columns = ((reached.right - 1) >> kTileShift) + 1 - g.x;
+        g.rows = ((reached.bottom - 1) >> kTileShift) + 1 - g.y;
+        return g;
+    }
+    std::size_t size() const { return std::size_t(columns) * std::size_t(rows); }
+    /// Of the tile in that column and row of the target.
+    int number(int column, int row) const { return (row - y) * columns + (column - x); }
+};
+
 /// What rasterizing counted.
 struct RasterCounters {
     StageCounters pixel;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/texture.h"
 
+#include "emu/error.h"
+
 #include <bit>
 
 namespace tessemu {
@@ -33,6 +35,17 @@ std::pair<std::vector<float>, int> make_mip_levels(std::span<float const> texels
     return {std::move(all), levels};
 }
 
+Texture2D texture_of(ColorTarget const& target, int slot, std::string name)
+{
+    if (target.samples() != 1)
+        throw Error("the target '" + name + "' has " + std::to_string(target.samples()) +
+                    " samples a pixel, a texture has 1: resolve it first");
+    std::size_t const texels =
+        target.pitch() * std::size_t(target.height() - 1) + std::size_t(target.width());
+    return Texture2D(std::span(target.texel(0, 0), texels * target.texel_bytes()), target.format(),
+                     target.width(), target.height(), target.pitch(), slot, std::move(name));
+}
+
 std::int32_t log2_fixed8(double x)
 {
     if (!(x == x) || x > 1e300) return 32767;
@@ -50,6 +63,12 @@ std::int32_t log2_fixed8(double x)
 }
 
 namespace detail {
+
+std::array<float, 4> texel_out_of_range(Format format)
+{
+    static constexpr std::byte kZeros[16]{}; // a code of zeros is 0 in every format
+    return decode(format, kZeros);
+}
 
 float lod_of(float dudx, float dvdx, float dudy, float dvdy)
 {
@@ -101,7 +120,7 @@ public:
         if (i >= 0 && j >= 0) {
             std::size_t const at = t_.index(i, j, level, slice_);
             read_(context_, at);
-            std::copy_n(t_.texel(at), 4, c.begin());
+            c = t_.texel(at);
         }
         if (r_.compare) {
             bool const nan = !(c[0] == c[0]) || !(r_.reference == r_.reference);

@@ -1,6 +1,9 @@
 // Textures: Load, and sampling with 8-bit weights, mip levels and addressing modes (R142, R145 to
 // R150). Open to every stage; what takes derivatives is for pixel shaders.
 //
+// A texel is an element of the texture's format: a read counts the format's bytes and gives four
+// components, missing ones as the format has them (R36).
+//
 // The sampler is fixed function: its arithmetic is not counted, every texel it reads is. Choices
 // (I-21): 8 bits of weight and of LOD fraction, LOD per pixel, a texel of weight 0 does not
 // contribute even if it is NaN, no anisotropic filter.
@@ -14,42 +17,84 @@
 
 namespace tessemu {
 
-/// 2D texture array of float4 texels with mip levels, rows from the top: slice after slice, in each
-/// the levels from the largest, each half the size of the one before, rounded down, at least 1.
+/// 2D texture array with mip levels, rows from the top: slice after slice, in each the levels from
+/// the largest, each half the size of the one before, rounded down, at least 1.
 class Texture2D {
 public:
     Texture2D() = default; ///< nothing bound: reads give 0
+    /// Four floats a texel (R32G32B32A32_FLOAT), row after row without a gap.
+    ///
+    /// Into a `recording` a shader that runs on Graph records its reads of texels, known by slot;
+    /// where there is none it reads texel (0, 0).
     Texture2D(std::span<float const> texels, int width, int height, int slot, std::string name,
-              int levels = 1, int slices = 1)
-        : texels_(texels),
+              int levels = 1, int slices = 1, ExpressionGraph* recording = nullptr)
+        : texels_(std::as_bytes(texels)),
           width_(width),
           height_(height),
           levels_(levels),
           slices_(slices),
           slot_(slot),
+          pitch_(std::size_t(width)),
+          recording_(recording),
           name_(std::move(name))
     {
         assert(slot >= 0 && slot < kBufferSlots);
-        assert(texels.size() == 4 * texels_of(width, height, levels) * std::size_t(slices));
+        assert(recording ||
+               texels.size() == 4 * texels_of(width, height, levels) * std::size_t(slices));
+    }
+    /// One level of any format, from its own bytes.
+    ///
+    /// \param row_pitch  texels from one row to the next, at least `width`
+    Texture2D(std::span<std::byte const> texels, Format format, int width, int height,
+              std::size_t row_pitch, int slot, std::string name,
+              ExpressionGraph* recording = nullptr)
+        : texels_(texels),
+          format_(format),
+          width_(width),
+          height_(height),
+          slot_(slot),
+          texel_bytes_(tessemu::info(format).bytes),
+          pitch_(row_pitch),
+          recording_(recording),
+          name_(std::move(name))
+    {
+        assert(slot >= 0 && slot < kBufferSlots);
+        assert(row_pitch >= std::size_t(width));
+        assert(recording || height == 0 ||
+               texels.size() >=
+                   (row_pitch * std::size_t(height - 1) + std::size_t(width)) * texel_bytes_);
     }
     int width(int level = 0) const { return std::max(1, width_ >> level); }
     int height(int level = 0) const { return std::max(1, height_ >> level); }
     int levels() const { return levels_; }
     int slices() const { return slices_; }
     int slot() const { return slot_; }
+    Format format() const { return format_; }
     bool bound() const { return !texels_.empty(); }
-    std::span<float const> texels() const { return texels_; }
+    ExpressionGraph* recording() const { return recording_; }
+    /// Texels from one row of a level to the next.
+    std::size_t row_pitch(int level = 0) const
+    {
+        return levels_ == 1 ? pitch_ : std::size_t(width(level));
+    }
+    /// Places of texels in memory, those between rows included.
+    std::size_t texel_count() const { return texels_.size() / texel_bytes_; }
     /// Index of a texel that is in range.
     std::size_t index(int x, int y, int level, int slice) const
     {
         return texels_of(width_, height_, levels_) * std::size_t(slice) +
-               texels_of(width_, height_, level) + std::size_t(y) * std::size_t(width(level)) +
+               texels_of(width_, height_, level) + std::size_t(y) * row_pitch(level) +
                std::size_t(x);
     }
-    float const* texel(std::size_t i) const { return texels_.data() + 4 * i; }
+    std::byte const* data() const { return texels_.data(); }
+    /// Its four components.
+    std::array<float, 4> texel(std::size_t i) const
+    {
+        return decode(format_, texels_.data() + texel_bytes_ * i);
+    }
     ResourceInfo info() const
     {
-        return {name_, ResourceKind::Texture, slot_, texels_.size() / 4, 4 * sizeof(float)};
+        return {name_, ResourceKind::Texture, slot_, texel_count(), texel_bytes_};
     }
     /// Texels of the first `levels` levels of a slice.
     static std::size_t texels_of(int width, int height, int levels)
@@ -61,10 +106,17 @@ public:
     }
 
 private:
-    std::span<float const> texels_;
+    std::span<std::byte const> texels_;
+    Format format_ = Format::R32G32B32A32_FLOAT;
     int width_ = 0, height_ = 0, levels_ = 1, slices_ = 1, slot_ = 0;
+    std::size_t texel_bytes_ = 4 * sizeof(float), pitch_ = 0;
+    ExpressionGraph* recording_ = nullptr;
     std::string name_;
 };
+
+/// What was drawn, as a texture of the target's format and size: a view of its memory. Throws Error
+/// for more than one sample a pixel, which are resolved first.
+Texture2D texture_of(ColorTarget const& target, int slot, std::string name);
 
 /// Appends mip levels to a texture of one level by averaging 2x2 texels (2 or 1 at odd sizes: the
 /// last row or column is left out where the size is rounded down). Returns texels and levels.
@@ -148,36 +200,117 @@ template <class T> float lane(T const& v, int l)
 }
 } // namespace detail
 
-/// HLSL Load: texel (x, y) without filtering; zeros out of range (R142).
+namespace detail {
+
+// Four components of a texel that no index reaches: 0 where the format has the component, its
+// default where it has not (R142).
+std::array<float, 4> texel_out_of_range(Format format);
+
+/// Texels by index, -1 out of range.
+template <int N> void read_texels(Texture2D const& texture, IntLanes<N> index, Lanes<N> (&out)[4])
+{
+    if (texture.format() == Format::R32_FLOAT && texture.bound()) {
+        IntLanes<N> const bits = gather_or_zero<N>(texture.data(), texture.texel_count(), index);
+        out[0].raw = typename Lanes<N>::Raw(bits.raw);
+        out[1] = out[2] = Lanes<N>(0.0f);
+        out[3] = Lanes<N>(1.0f);
+        return;
+    }
+    std::int32_t at[N];
+    store_lanes<N>(index, at);
+    if (texture.format() == Format::R32G32B32A32_FLOAT) {
+        static constexpr float kZeros[4]{};
+        Floats<4> column[4][N / 4];
+        for (int g = 0; g < N / 4; ++g) {
+            Floats<4> r[4];
+            for (int l = 0; l < 4; ++l) {
+                std::int32_t const i = at[4 * g + l];
+                void const* const from = i < 0 ? static_cast<void const*>(kZeros)
+                                               : texture.data() + sizeof(kZeros) * std::size_t(i);
+                __builtin_memcpy(&r[l], from, sizeof r[l]);
+            }
+            transpose(r);
+            for (int k = 0; k < 4; ++k) column[k][g] = r[k];
+        }
+        for (int k = 0; k < 4; ++k) out[k].raw = joined<N>(column[k]);
+        return;
+    }
+    std::array<float, 4> const outside = texel_out_of_range(texture.format());
+    for (int l = 0; l < N; ++l) {
+        std::array<float, 4> const texel = at[l] < 0 ? outside : texture.texel(std::size_t(at[l]));
+        for (std::size_t k = 0; k < 4; ++k) out[k].raw[l] = texel[k];
+    }
+}
+
+/// The whole number below, as a shader's conversion gives it: clamped, 0 for NaN (R19).
+inline std::int32_t floor_to_int(float x)
+{
+    return int_from_float(floor(x));
+}
+template <int N> IntLanes<N> floor_to_int(Lanes<N> x)
+{
+    // In the range of a texture's coordinates and a little more, where the conversion is exact.
+    Lanes<N> const down = floor(x);
+    Lanes<N> const low(-65536.0f), high(65536.0f);
+    Lanes<N> const in =
+        select(down == down, select(down < low, low, select(down > high, high, down)), 0.0f);
+    return typename IntLanes<N>::Raw(__builtin_convertvector(in.raw, typename IntLanes<N>::Raw));
+}
+} // namespace detail
+
+/// HLSL Load: texel (x, y) without filtering. Out of range components are 0, those that the format
+/// lacks have their default, and with nothing bound all are 0 (R142).
 template <class T>
 float4<T> load(Texture2D const& texture, int_of<T> x, int_of<T> y, int level = 0, int slice = 0)
 {
+    if constexpr (RecordingScalar<T>) {
+        if (texture.recording())
+            return T::texel(*texture.recording(), {texture.slot(), level, slice}, T(float(x)),
+                            T(float(y)));
+    }
     bool const exists = texture.bound() && level >= 0 && level < texture.levels() && slice >= 0 &&
                         slice < texture.slices();
     int const width = exists ? texture.width(level) : 0,
               height = exists ? texture.height(level) : 0;
-    std::size_t const first = exists ? texture.index(0, 0, level, slice) : 0;
-    auto const texel = [&](std::int32_t i, std::int32_t j) {
-        bool const in = i >= 0 && j >= 0 && i < width && j < height;
-        return in ? std::int32_t(first) + j * width + i : std::int32_t(-1);
-    };
-    float const* const data = texture.texels().data();
+    auto const first = std::int32_t(exists ? texture.index(0, 0, level, slice) : 0),
+               pitch = std::int32_t(exists ? texture.row_pitch(level) : 0);
     if constexpr (lanes_of<T> == 1) {
-        std::int32_t const i = texel(x, y);
-        detail::count_fetch<T>(texture.slot(), i, texture.texels().size() / 4);
-        if (i < 0) return {T(0), T(0), T(0), T(0)};
-        return load_record<float4<T>>(data + 4 * std::size_t(i));
+        bool const in = x >= 0 && y >= 0 && x < width && y < height;
+        std::int32_t const i = in ? first + y * pitch + x : -1;
+        detail::count_fetch<T>(texture.slot(), i, texture.texel_count());
+        if (!texture.bound()) return {T(0), T(0), T(0), T(0)};
+        std::array<float, 4> const texel =
+            in ? texture.texel(std::size_t(i)) : detail::texel_out_of_range(texture.format());
+        return load_record<float4<T>>(texel.data());
     } else {
         constexpr int N = lanes_of<T>;
-        IntLanes<N> index(0);
-        for (int k = 0; k < N; ++k) index.raw[k] = texel(x.raw[k], y.raw[k]);
+        using I = IntLanes<N>;
+        Mask<N> const in = (x >= I(0)) & (y >= I(0)) & (x < I(width)) & (y < I(height));
+        I const index = select(in, I(first) + y * I(pitch) + x, I(-1));
         detail::count_fetch<T>(texture.slot(), index);
         Lanes<N> c[4] = {0.0f, 0.0f, 0.0f, 0.0f};
-        for (int k = 0; k < N; ++k)
-            for (int m = 0; m < 4; ++m)
-                if (index.raw[k] >= 0)
-                    c[m].raw[k] = data[4 * std::size_t(index.raw[k]) + std::size_t(m)];
+        if (texture.bound()) detail::read_texels<N>(texture, index, c);
         return {T(c[0]), T(c[1]), T(c[2]), T(c[3])};
+    }
+}
+
+/// The texel that holds the point `at`, in texels from the top left corner: a rectangle texture
+/// with the filter NEAREST in OpenGL, Load of the whole numbers below in Direct3D 11. One counted
+/// fetch; the conversion is part of it. Out of range as load().
+template <class T> float4<T> fetch_texel(Texture2D const& texture, float2<T> const& at)
+{
+    if constexpr (RecordingScalar<T>) {
+        if (texture.recording())
+            return T::texel(*texture.recording(), {texture.slot()}, at.x, at.y);
+        return load<T>(texture, 0, 0);
+    } else if constexpr (requires { lanes_value(at.x); }) {
+        return load<T>(texture, detail::floor_to_int(lanes_value(at.x)),
+                       detail::floor_to_int(lanes_value(at.y)));
+    } else if constexpr (std::floating_point<T>) {
+        return load<T>(texture, detail::floor_to_int(float(at.x)),
+                       detail::floor_to_int(float(at.y)));
+    } else { // a tally has no point
+        return load<T>(texture, 0, 0);
     }
 }
 

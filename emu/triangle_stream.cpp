@@ -34,12 +34,11 @@ bool TriangleStream::supports(RasterSetup const& setup, bool triangles)
 }
 
 void TriangleStream::bind(RasterSetup const& setup, PrimitiveAssembler const& assembler,
-                          int tiles_x, int tiles_y)
+                          TileGrid const& tiles)
 {
     setup_ = &setup;
     assembler_ = &assembler;
-    tiles_x_ = tiles_x;
-    tiles_y_ = tiles_y;
+    tiles_ = tiles;
     pitch_ = int(setup.target.depth->pitch());
     attributes_ = setup.pixel_shader->input_floats();
     bounds_ = setup.bounds[0];
@@ -64,7 +63,7 @@ void TriangleStream::begin(AssembledVertices& vertices, FragmentBins& bins)
     vertices_ = &vertices;
     bins_ = &bins;
     fragments_ = 0;
-    bins.reset(std::size_t(tiles_x_ * tiles_y_), wide_color_);
+    bins.reset(tiles_.size(), wide_color_);
 }
 
 void TriangleStream::add_patch(DomainPoints const& pattern, std::int32_t primitive_id,
@@ -580,7 +579,7 @@ void TriangleStream::shade()
         I const x = load_lanes<N>(pixel_x_ + q), y = load_lanes<N>(pixel_y_ + q);
         I const shift(kTileShift);
         I const texel = y * I(pitch_) + x;
-        I const tiles = (y >> shift) * I(tiles_x_) + (x >> shift);
+        I const tiles = (y >> shift) * I(tiles_.columns) + (x >> shift) + I(tiles_.number(0, 0));
         I color[4];
         if (wide_color_) {
             for (int k = 0; k < 4; ++k) {

@@ -27,9 +27,7 @@ public:
     static bool supports(RasterSetup const& setup, bool triangles);
 
     /// Starts a draw, whose `setup` and `assembler` must outlive it. Memory serves draw after draw.
-    /// \param tiles_x, tiles_y  tiles in a row of the target and in a column
-    void bind(RasterSetup const& setup, PrimitiveAssembler const& assembler, int tiles_x,
-              int tiles_y);
+    void bind(RasterSetup const& setup, PrimitiveAssembler const& assembler, TileGrid const& tiles);
 
     /// Starts a chunk whose fragments go to `bins`.
     void begin(AssembledVertices& vertices, FragmentBins& bins);
@@ -91,7 +89,8 @@ private:
 
     RasterSetup const* setup_ = nullptr;
     PrimitiveAssembler const* assembler_ = nullptr;
-    int tiles_x_ = 0, tiles_y_ = 0, pitch_ = 0, attributes_ = 0;
+    TileGrid tiles_;
+    int pitch_ = 0, attributes_ = 0;
     Rect bounds_;
     bool wide_color_ = false, cull_clockwise_ = false, cull_counter_clockwise_ = false;
     std::vector<Interpolation> modes_;

@@ -387,6 +387,7 @@ public:
         return list;
     }
     std::vector<PatchCount> patch_counts() const override { return patches_.patch_counts(); }
+    bool has_creases() const override { return patches_.has_creases(); }
 
 private:
     PatchMesh const& patches_;

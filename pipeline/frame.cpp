@@ -112,6 +112,7 @@ PixelShader make_view(Draw const& draw, FrameSettings const& settings)
         PatchPixelShader s;
         s.color = color_of(draw.kind.patch_class);
         s.light = as_array(light);
+        if (draw.grid) s.brightness = 0.94f, s.step = 0; // SV_PrimitiveID is a triangle's
         return on_surface(s, settings);
     }
     default: {
@@ -219,9 +220,10 @@ void add_wires(CommandList& list, FrameSettings const& s, RasterizerState lines)
 // A colour for each patch, by its valence.
 void show_valences(CommandList& list, RefinedMesh const& mesh, FrameSettings const& s)
 {
-    if (s.direct3d10)
+    if (!list.primitives_are_patches())
         throw Error("the valence view tells patches apart by SV_PrimitiveID, which the Direct3D 10 "
-                    "path has of triangles; 'patches' is a view that it has");
+                    "path, and a scheme without a tessellator, has of triangles; 'patches' is a "
+                    "view that they have");
     PatchValences const valences(mesh);
     PatchColorPixelShader view;
     view.light = as_array(key_light(s.camera));

@@ -83,6 +83,7 @@ struct SkinningComputeShader {
     Buffer<float> rest;    ///< [vertex][3]
     RWBuffer<float> moved; ///< [vertex][stride]
     int stride = 4;
+    std::array<float, 3> origin{}; ///< of what is written
 
     std::vector<ResourceInfo> resources() const
     {
@@ -96,7 +97,9 @@ struct SkinningComputeShader {
             Int const three = vertex * Int(3);
             float3<T> const p(load<T>(rest, three), load<T>(rest, three + Int(1)),
                               load<T>(rest, three + Int(2)));
-            float3<T> const posed = skin.posed<T>(vertex, p);
+            float3<T> posed = skin.posed<T>(vertex, p);
+            if (origin != std::array<float, 3>{})
+                posed = posed - float3<T>(T(origin[0]), T(origin[1]), T(origin[2]));
             Int const out = vertex * Int(stride);
             store(moved, out, posed.x);
             store(moved, out + Int(1), posed.y);

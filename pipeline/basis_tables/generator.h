@@ -18,7 +18,8 @@ inline constexpr int kTableSamples = kTableSide * kTableSide;
 
 /// Weights of a patch's control points, in double.
 struct BasisTables {
-    int points = 0; ///< control points, in the order of PatchType::points()
+    int points = 0;                    ///< control points, in the order of PatchType::points()
+    std::vector<std::uint16_t> beyond; ///< the last of them, by number in beyond_points()
     /// [control point * kTableSamples + j * kTableSide + i]: at u = i/32, v = j/32. Sums over the
     /// control points are 1, 0, 0.
     ///

@@ -2,6 +2,7 @@
 #include "pipeline/basis_tables/mesh_basis.h"
 
 #include "emu/parallel.h"
+#include "pipeline/mesh/flatness.h"
 
 #include <algorithm>
 #include <cassert>
@@ -15,13 +16,14 @@ namespace {
 // The type of the patch on a face, and where it lies.
 struct FoundPatch {
     PatchType type;
-    std::uint32_t vertex = 0;
-    std::uint32_t first_face = 0; // of the ring: the type's face 0
+    HalfEdge half_edge = 0;       // of the face, at the corner
+    std::uint32_t first_face = 0; // of the corner's ring: the type's face 0
+    std::array<std::pair<std::uint32_t, std::uint32_t>, 3> beyond; // vertices, and the same of them
 };
 
-bool is_infinite(float sharpness)
+bool is_finite(float sharpness)
 {
-    return sharpness >= kInfinitelySharp;
+    return sharpness > 0 && sharpness < kInfinitelySharp;
 }
 
 class PatchFinder {
@@ -49,75 +51,166 @@ public:
     FoundPatch at(HalfEdge h)
     {
         FoundPatch out;
-        std::uint32_t const v = out.vertex = t_.vertex_of(h);
-        auto const n = std::uint32_t(t_.ring(v).size());
-        if (n > PatchType::kMostFaces)
-            throw LimitError("faces at " + refined_.vertex_in_words(v), n, PatchType::kMostFaces);
-        sharpness_.around(v, ring_);
-        std::uint32_t const position = t_.ring_index(h);
-        auto const limited = [](float s) { return std::min(s, kInfinitelySharp); };
-        VertexRing& corner = out.type.corner;
-        corner.vertex = limited(ring_.vertex);
-        for (float& s : ring_.edge) s = limited(s);
-        std::vector<std::uint32_t> cuts;
-        for (std::uint32_t j = 0; j < ring_.edge.size(); ++j)
-            if (is_infinite(ring_.edge[j])) cuts.push_back(j);
-        VertexRule const rule = ring_.rule();
-        if (!ring_.is_semi_sharp() && cuts.size() > 1) {
-            if (!ring_.open) cuts.push_back(cuts[0] + n); // round to the first
-            std::size_t s = 0;
-            auto const of_sector = [&] { return (position + n - cuts[s] % n) % n; };
-            while (of_sector() >= cuts[s + 1] - cuts[s]) ++s;
-            corner.closed = false;
-            corner.faces = std::uint16_t(cuts[s + 1] - cuts[s]);
-            corner.position = std::uint16_t(of_sector());
-            corner.vertex = rule == VertexRule::Corner ? kInfinitelySharp : 0;
-            out.first_face = cuts[s] % n;
-            return out;
+        out.half_edge = h;
+        PatchType& type = out.type;
+        auto const [corner, first] = ring_at(h);
+        type.corner = corner;
+        out.first_face = first;
+        HalfEdge const right = right_of(h), upper = upper_of(h);
+        std::array<HalfEdge, 3> const beyond{t_.next(t_.next(right)),
+                                             t_.next(t_.next(t_.twin(t_.previous(right)))),
+                                             t_.previous(upper)};
+        SubdivisionRules const& rules = t_.mesh().rules;
+        if (rules.crease_method == CreaseMethod::Chaikin) {
+            auto const ring = t_.ring(t_.vertex_of(h));
+            std::size_t const edges = corner.edge_count(), j = corner.position;
+            std::vector<float> outer(edges, 0);
+            for (std::size_t i = 0; i < edges; ++i)
+                if (i == j || i == (j + 1) % edges || is_finite(corner.edge(i)))
+                    outer[i] = outer_sharpness(ring, first + i);
+            bool const lends[] = {is_finite(outer[j]), is_finite(outer[(j + 1) % edges])};
+            if (lends[0] || lends[1] || corner.is_semi_sharp()) {
+                type.crease_method = CreaseMethod::Chaikin;
+                type.outer = outer;
+            }
+            if (lends[0]) add_beyond(PatchType::RightVertex, beyond[0], out);
+            if (lends[1]) add_beyond(PatchType::UpperVertex, beyond[2], out);
         }
-        corner.faces = std::uint16_t(n);
-        corner.closed = !ring_.open;
-        corner.position = std::uint16_t(ring_.open ? position : 0);
-        out.first_face = ring_.open ? 0 : position;
-        corner.edges = ring_.edge;
-        if (corner.closed)
-            std::rotate(corner.edges.begin(), corner.edges.begin() + position, corner.edges.end());
-        if (corner.closed &&
-            std::none_of(corner.edges.begin(), corner.edges.end(), [](float s) { return s > 0; }))
-            corner.edges.clear();
+        if (rules.sectors == SectorRules::Biermann) {
+            for (int v = 0; v < 3; ++v) {
+                VertexRing const ring = ring_at(beyond[std::size_t(v)]).first;
+                bool const leans =
+                    v != PatchType::DiagonalVertex &&
+                    ring.leans((ring.position + (v == PatchType::RightVertex)) % ring.edge_count());
+                if (leans || is_moved(ring)) add_beyond(v, beyond[std::size_t(v)], out);
+            }
+            bool const any = std::any_of(type.beyond.begin(), type.beyond.end(),
+                                         [](auto const& ring) { return ring.has_value(); });
+            if (any || corner.is_tagged() || is_moved(corner)) {
+                type.sectors = SectorRules::Biermann;
+                type.flatness = rules.flatness;
+            }
+        }
         return out;
     }
 
     // Vertices of the patch's control points, in their order.
-    void add_points(FoundPatch const& p, HalfEdge h, std::vector<std::uint32_t>& out) const
+    void add_points(FoundPatch const& p, std::span<std::uint16_t const> beyond,
+                    std::vector<std::uint32_t>& out) const
     {
-        auto const ring = t_.ring(p.vertex);
-        auto const far = [&](HalfEdge k) { return t_.vertex_of(t_.next(k)); };
-        auto const across = [&](HalfEdge k) { return far(t_.next(k)); };
+        HalfEdge const h = p.half_edge;
+        auto const ring = t_.ring(t_.vertex_of(h));
         VertexRing const& corner = p.type.corner;
-        out.push_back(p.vertex);
-        for (std::size_t j = 0; j < corner.faces; ++j) {
-            HalfEdge const k = ring[(p.first_face + j) % ring.size()];
-            out.push_back(far(k));
-            out.push_back(across(k));
+        out.push_back(t_.vertex_of(h));
+        for (std::size_t j = 0; j < corner.edge_count(); ++j) {
+            out.push_back(edge_end(ring, p.first_face + j));
+            if (j < corner.faces) out.push_back(across(ring[(p.first_face + j) % ring.size()]));
         }
-        if (!corner.closed)
-            out.push_back(
-                t_.vertex_of(t_.previous(ring[(p.first_face + corner.faces - 1u) % ring.size()])));
-        // Half-edges on the patch's far sides, in the faces beyond: from (1,1), and from (0,1).
-        HalfEdge const right = t_.twin(t_.next(h)), top = t_.twin(t_.next(t_.next(h))),
-                       upper_right = t_.twin(t_.previous(right));
+        HalfEdge const right = right_of(h), upper = upper_of(h),
+                       diagonal = t_.twin(t_.previous(right));
         out.push_back(t_.vertex_of(t_.next(t_.next(right))));
         out.push_back(t_.vertex_of(t_.previous(right)));
-        out.push_back(t_.vertex_of(t_.next(t_.next(upper_right))));
-        out.push_back(t_.vertex_of(t_.next(t_.next(top))));
-        out.push_back(t_.vertex_of(t_.previous(top)));
+        out.push_back(t_.vertex_of(t_.next(t_.next(diagonal))));
+        out.push_back(t_.vertex_of(t_.next(t_.next(upper))));
+        out.push_back(t_.vertex_of(t_.previous(upper)));
         if (p.type.has_lower()) out.push_back(t_.vertex_of(t_.previous(t_.twin(t_.next(right)))));
-        if (p.type.has_left())
-            out.push_back(t_.vertex_of(t_.next(t_.next(t_.twin(t_.previous(top))))));
+        if (p.type.has_left()) out.push_back(across(t_.twin(t_.previous(upper))));
+        if (beyond.empty()) return;
+        auto const points = p.type.beyond_points();
+        for (std::uint16_t i : beyond) {
+            PatchType::BeyondPoint const& x = points[i];
+            auto const& [vertex, first] = p.beyond[std::size_t(x.vertex)];
+            auto const of = t_.ring(vertex);
+            out.push_back(x.is_face ? across(of[(first + x.index) % of.size()])
+                                    : edge_end(of, first + x.index));
+        }
     }
 
 private:
+    std::uint32_t far_end(HalfEdge h) const { return t_.vertex_of(t_.next(h)); }
+    std::uint32_t across(HalfEdge h) const { return t_.vertex_of(t_.next(t_.next(h))); }
+    // In the faces on the patch's right and upper sides: from (1,1) and from (0,1).
+    HalfEdge right_of(HalfEdge h) const { return t_.twin(t_.next(h)); }
+    HalfEdge upper_of(HalfEdge h) const { return t_.twin(t_.next(t_.next(h))); }
+    // The last edge of an open ring belongs to its last face.
+    std::uint32_t edge_end(std::span<HalfEdge const> ring, std::size_t j) const
+    {
+        if (j >= ring.size() && t_.is_boundary(t_.vertex_of(ring[0])))
+            return t_.vertex_of(t_.previous(ring.back()));
+        return far_end(ring[j % ring.size()]);
+    }
+
+    // The ring of a half-edge's vertex, looked at by its face: where nothing is semi-sharp the
+    // sector that the face is in. And its first face.
+    std::pair<VertexRing, std::uint32_t> ring_at(HalfEdge h)
+    {
+        VertexRing out;
+        std::uint32_t const v = t_.vertex_of(h), position = t_.ring_index(h);
+        auto const n = std::uint32_t(t_.ring(v).size());
+        if (n > PatchType::kMostFaces)
+            throw LimitError("faces at " + refined_.vertex_in_words(v), n, PatchType::kMostFaces);
+        sharpness_.around(v, ring_);
+        for (float& s : ring_.edge) s = std::min(s, kInfinitelySharp);
+        std::vector<std::uint32_t> cuts;
+        for (std::uint32_t j = 0; j < ring_.edge.size(); ++j)
+            if (ring_.edge[j] > 0) cuts.push_back(j);
+        out.vertex = std::min(ring_.vertex, kInfinitelySharp);
+        // A given flatness may move a sector because of another.
+        bool const is_whole =
+            ring_.biermann && ring_.flatness && *ring_.flatness > 0 && !ring_.open;
+        if (!ring_.is_semi_sharp() && cuts.size() > 1 && !is_whole) {
+            if (!ring_.open) cuts.push_back(cuts[0] + n); // round to the first
+            std::size_t s = 0;
+            auto const in_sector = [&] { return (position + n - cuts[s] % n) % n; };
+            while (in_sector() >= cuts[s + 1] - cuts[s]) ++s;
+            out.closed = false;
+            out.faces = std::uint16_t(cuts[s + 1] - cuts[s]);
+            out.position = std::uint16_t(in_sector());
+            out.vertex = ring_.rule() == VertexRule::Corner ? kInfinitelySharp : 0;
+            if (is_concave(cuts[s] % n)) out.concave = {0};
+            return {out, cuts[s] % n};
+        }
+        out.faces = std::uint16_t(n);
+        out.closed = !ring_.open;
+        std::uint32_t const first = ring_.open ? 0 : position;
+        out.position = std::uint16_t(ring_.open ? position : 0);
+        if (!cuts.empty()) {
+            out.edges = ring_.edge;
+            std::rotate(out.edges.begin(), out.edges.begin() + first, out.edges.end());
+            for (std::size_t edge : ring_.concave)
+                out.concave.push_back(std::uint16_t((edge + n - first) % n));
+            std::sort(out.concave.begin(), out.concave.end());
+        }
+        return {out, first};
+    }
+    bool is_concave(std::size_t edge) const
+    {
+        return std::binary_search(ring_.concave.begin(), ring_.concave.end(), edge);
+    }
+    // In each step.
+    bool is_moved(VertexRing const& r) const
+    {
+        SubdivisionRules const& rules = t_.mesh().rules;
+        return is_flattened(r.sharpness(rules.sectors, rules.flatness), r.faces);
+    }
+    void add_beyond(int v, HalfEdge h, FoundPatch& out)
+    {
+        auto const [ring, first] = ring_at(h);
+        out.type.beyond[std::size_t(v)] = ring;
+        out.beyond[std::size_t(v)] = {t_.vertex_of(h), first};
+    }
+    // Of the edge that goes on from edge j: at its end, beyond two more.
+    float outer_sharpness(std::span<HalfEdge const> ring, std::size_t j) const
+    {
+        if (j >= ring.size() && t_.is_boundary(t_.vertex_of(ring[0]))) return kInfinitelySharp;
+        HalfEdge const other = t_.twin(ring[j % ring.size()]); // from the far end
+        if (other == Topology::kNone) return kInfinitelySharp;
+        std::uint32_t const v = t_.vertex_of(other);
+        auto const around = t_.ring(v);
+        return std::min(sharpness_.edge(around[(t_.ring_index(other) + 2) % around.size()]),
+                        kInfinitelySharp);
+    }
+
     // Four faces, and no tag.
     bool is_plain(HalfEdge h) const
     {
@@ -140,8 +233,7 @@ private:
         for (std::size_t j = 0; j < 4; ++j)
             if (far(ring[j]) == from)
                 return sharpness_.edge(ring[(j + 1) % 4]) == 0 &&
-                       sharpness_.edge(ring[(j + 3) % 4]) == 0 &&
-                       (sharpness_.edge(ring[j]) > 0) == (sharpness_.edge(ring[(j + 2) % 4]) > 0);
+                       sharpness_.edge(ring[(j + 3) % 4]) == 0;
         return false;
     }
 
@@ -168,22 +260,19 @@ MeshBasis::MeshBasis(RefinedMesh const& refined, BasisTableStore* store, BasisOp
     PatchFinder finder(refined);
     std::map<PatchType, std::uint32_t> numbers;
     std::vector<PatchType> types;
-    std::vector<HalfEdge> corner_half_edge;
+    std::vector<FoundPatch> found;
     // By vertex and the first face of its sector; of a closed ring one.
     std::map<std::array<std::uint32_t, 2>, std::uint32_t> corners;
     for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
-        HalfEdge const h = finder.corner_of(f);
-        FoundPatch const p = finder.at(h);
+        FoundPatch const& p = found.emplace_back(finder.at(finder.corner_of(f)));
         auto const [type, is_new_type] = numbers.try_emplace(p.type, std::uint32_t(types.size()));
         if (is_new_type) types.push_back(p.type);
-        auto const [corner, is_new_corner] =
-            corners.try_emplace({p.vertex, p.type.corner.closed ? 0 : p.first_face},
-                                std::uint32_t(corner_owner_.size()));
+        auto const [corner, is_new_corner] = corners.try_emplace(
+            {topology.vertex_of(p.half_edge), p.type.corner.closed ? 0 : p.first_face},
+            std::uint32_t(corner_owner_.size()));
         if (is_new_corner) corner_owner_.push_back(f);
-        patches_.push_back({f, int(h - mesh.face_start[f]), type->second,
-                            std::uint32_t(points_.size()), corner->second});
-        corner_half_edge.push_back(h);
-        finder.add_points(p, h, points_);
+        patches_.push_back(
+            {f, int(p.half_edge - mesh.face_start[f]), type->second, 0, corner->second});
     }
 
     std::vector<std::optional<BasisTables>> tables(types.size());
@@ -214,11 +303,29 @@ MeshBasis::MeshBasis(RefinedMesh const& refined, BasisTableStore* store, BasisOp
         done += count;
         tell();
     }
-    for (std::size_t i = 0; i < types.size(); ++i)
-        types_.push_back(in_single_precision(types[i], *tables[i]));
+    std::map<std::pair<std::uint32_t, std::vector<std::uint16_t>>, std::uint32_t> variants;
+    std::vector<std::uint32_t> vertices;
+    std::map<std::uint32_t, std::uint16_t> number_of; // by vertex
+    for (std::size_t f = 0; f < patches_.size(); ++f) {
+        BasisPatch& patch = patches_[f];
+        BasisTables const& of_type = *tables[patch.type];
+        vertices.clear(), number_of.clear();
+        finder.add_points(found[f], of_type.beyond, vertices);
+        patch.first_point = std::uint32_t(points_.size());
+        std::vector<std::uint16_t> point_of;
+        for (std::uint32_t v : vertices) {
+            auto const [number, is_new] = number_of.try_emplace(v, std::uint16_t(number_of.size()));
+            if (is_new) points_.push_back(v);
+            point_of.push_back(number->second);
+        }
+        auto const [variant, is_new] =
+            variants.try_emplace({patch.type, point_of}, std::uint32_t(types_.size()));
+        if (is_new)
+            types_.push_back(in_single_precision(types[patch.type], of_type, std::move(point_of)));
+        patch.type = variant->second;
+    }
     if (!options.enforced) return;
 
-    // What patches share: a type's side against another's.
     std::set<Joint> joints;
     std::vector<std::uint32_t> const& start = mesh.face_start;
     auto const side_of = [&](HalfEdge h) { // of its face's patch, from its corner on
@@ -228,10 +335,12 @@ MeshBasis::MeshBasis(RefinedMesh const& refined, BasisTableStore* store, BasisOp
     };
     for (HalfEdge h = 0; h < mesh.face_vertices.size(); ++h) {
         HalfEdge const other = topology.twin(h);
-        if (other == Topology::kNone) continue;
-        Joint const joint{patches_[topology.face_of(h)].type, side_of(h),
-                          patches_[topology.face_of(other)].type, side_of(other)};
-        if (joint.is_canonical()) joints.insert(joint);
+        PatchSide const side = side_of(h);
+        if (other == Topology::kNone || (side != PatchSide::Lower && side != PatchSide::Right))
+            continue;
+        assert(side_of(other) == (side == PatchSide::Lower ? PatchSide::Left : PatchSide::Upper));
+        joints.insert(
+            {patches_[topology.face_of(h)].type, side, patches_[topology.face_of(other)].type});
     }
     symmetry_ = enforce_symmetry(types_, std::vector<Joint>(joints.begin(), joints.end()));
 }

@@ -38,7 +38,8 @@ public:
     explicit MeshBasis(RefinedMesh const& mesh, BasisTableStore* store = nullptr,
                        BasisOptions options = {}, RefinementProgress const& progress = {});
 
-    /// In the order of first use.
+    /// In the order of first use. A PatchType may occur more than once, with other points that are
+    /// one vertex.
     std::span<PatchTypeTables const> types() const { return types_; }
     /// Of all faces, holes too, in the order of the faces.
     std::span<BasisPatch const> patches() const { return patches_; }

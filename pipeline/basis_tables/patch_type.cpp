@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace tessemu {
 
@@ -12,6 +13,91 @@ bool is_finite_sharpness(float s)
 {
     return s > 0 && s < kInfinitelySharp;
 }
+
+// Numbers as bytes, the lowest first, whatever the machine.
+class Writer {
+public:
+    void number(std::uint64_t x, int bytes)
+    {
+        for (int i = 0; i < bytes; ++i) out += char(x >> (8 * i));
+    }
+    void real(float x) { number(std::bit_cast<std::uint32_t>(x), 4); }
+    void reals(std::vector<float> const& list)
+    {
+        number(list.size(), 2);
+        for (float x : list) real(x);
+    }
+    void ring(VertexRing const& r)
+    {
+        number(r.closed, 1);
+        number(r.faces, 2);
+        number(r.position, 2);
+        real(r.vertex);
+        reals(r.edges);
+        number(r.concave.size(), 2);
+        for (std::uint16_t edge : r.concave) number(edge, 2);
+    }
+    std::string out;
+};
+
+class Reader {
+public:
+    explicit Reader(std::string_view bytes) : rest_(bytes) {}
+
+    std::uint64_t number(int bytes, std::uint64_t most = ~std::uint64_t(0))
+    {
+        check(rest_.size() >= std::size_t(bytes));
+        std::uint64_t out = 0;
+        for (int i = 0; i < bytes; ++i)
+            out |= std::uint64_t(static_cast<unsigned char>(rest_[std::size_t(i)])) << (8 * i);
+        rest_.remove_prefix(std::size_t(bytes));
+        check(out <= most);
+        return out;
+    }
+    float sharpness()
+    {
+        float const x = std::bit_cast<float>(std::uint32_t(number(4)));
+        check(x >= 0 && x <= kInfinitelySharp && !std::signbit(x));
+        return x;
+    }
+    std::vector<float> sharpnesses(std::size_t most)
+    {
+        std::vector<float> out(std::size_t(number(2, most)));
+        for (float& x : out) x = sharpness();
+        return out;
+    }
+    VertexRing ring()
+    {
+        VertexRing r;
+        r.closed = number(1, 1);
+        r.faces = std::uint16_t(number(2, PatchType::kMostFaces));
+        check(r.faces >= (r.closed ? 2 : 1));
+        r.position = std::uint16_t(number(2, r.closed ? 0 : r.faces - 1u));
+        r.vertex = sharpness();
+        r.edges = sharpnesses(r.edge_count());
+        check(r.edges.empty() || r.edges.size() == r.edge_count());
+        check(r.closed || r.edges.empty() ||
+              (r.edges[0] == kInfinitelySharp && r.edges.back() == kInfinitelySharp));
+        r.concave.resize(std::size_t(number(2, r.edge_count())));
+        for (std::uint16_t& edge : r.concave) edge = std::uint16_t(number(2, r.edge_count() - 1));
+        check(std::is_sorted(r.concave.begin(), r.concave.end()));
+        return r;
+    }
+    double fraction()
+    {
+        double const x = std::bit_cast<double>(number(8));
+        check(x >= 0 && x <= 1);
+        return x;
+    }
+    void end() { check(rest_.empty()); }
+    static void check(bool right)
+    {
+        if (!right) throw Error("these bytes are no patch type");
+    }
+
+private:
+    std::string_view rest_;
+};
 
 } // namespace
 
@@ -48,12 +134,42 @@ bool VertexRing::is_semi_sharp() const
            std::any_of(edges.begin(), edges.end(), is_finite_sharpness);
 }
 
+bool VertexRing::leans(std::size_t j) const
+{
+    Lean const by = sharpness(SectorRules::Biermann, {}).leans()[j];
+    return by.end == 0 && by.cos_theta != 0;
+}
+
+RingSharpness VertexRing::sharpness(SectorRules sectors, std::optional<double> flatness) const
+{
+    RingSharpness out;
+    out.open = !closed;
+    out.vertex = vertex;
+    out.biermann = sectors == SectorRules::Biermann;
+    out.flatness = flatness;
+    for (std::size_t j = 0; j < edge_count(); ++j) out.edge.push_back(edge(j));
+    out.concave.assign(concave.begin(), concave.end());
+    return out;
+}
+
 PatchFamily PatchType::family() const
 {
-    if (corner.is_semi_sharp()) return PatchFamily::SemiSharp;
-    if (corner.vertex > 0) return PatchFamily::ConvexCorner;
-    if (!corner.closed) return PatchFamily::Crease;
-    if (!corner.edges.empty()) return PatchFamily::Dart;
+    if (corner.is_semi_sharp() || crease_method == CreaseMethod::Chaikin)
+        return PatchFamily::SemiSharp;
+    RingSharpness const sharp = corner.sharpness(sectors, flatness);
+    switch (sharp.rule()) {
+    case VertexRule::Corner:
+        for (RingSector const& s : sharp.sectors())
+            if ((corner.position + corner.faces - s.first % corner.faces) % corner.faces < s.faces)
+                return s.concave ? PatchFamily::ConcaveCorner : PatchFamily::ConvexCorner;
+        return PatchFamily::ConvexCorner;
+    case VertexRule::Crease:
+        return PatchFamily::Crease;
+    case VertexRule::Dart:
+        return PatchFamily::Dart;
+    case VertexRule::Smooth:
+        break;
+    }
     return corner.faces == 4 ? PatchFamily::Regular : PatchFamily::Smooth;
 }
 
@@ -68,6 +184,63 @@ std::string PatchType::in_words() const
 int PatchType::points() const
 {
     return ring_points() + 5 + has_lower() + has_left();
+}
+
+std::vector<PatchType::BeyondPoint> PatchType::beyond_points() const
+{
+    std::vector<BeyondPoint> out;
+    for (int v = 0; v < 3; ++v) {
+        auto const& ring = beyond[std::size_t(v)];
+        if (!ring) continue;
+        int const p = ring->position, n = ring->faces;
+        // The edges and faces that points() has, from one to another.
+        bool const lower = v == RightVertex && has_lower(), left = v == UpperVertex && has_left();
+        int const first = p - left, edges = 2 + lower + left;
+        auto const is_known = [&](int i, int count) {
+            int const from_first = i - first;
+            if (!ring->closed) return from_first >= 0 && from_first < count;
+            return ((from_first % n) + n) % n < count;
+        };
+        for (int i = 0; i < n; ++i) {
+            if (!is_known(i, edges)) out.push_back({v, false, std::uint16_t(i)});
+            if (!is_known(i, edges - 1)) out.push_back({v, true, std::uint16_t(i)});
+        }
+        if (!ring->closed && !is_known(n, edges)) out.push_back({v, false, std::uint16_t(n)});
+    }
+    return out;
+}
+
+std::string PatchType::bytes() const
+{
+    Writer w;
+    w.ring(corner);
+    for (auto const& ring : beyond) {
+        w.number(ring.has_value(), 1);
+        if (ring) w.ring(*ring);
+    }
+    w.number(crease_method == CreaseMethod::Chaikin, 1);
+    w.reals(outer);
+    w.number(sectors == SectorRules::Biermann, 1);
+    w.number(flatness.has_value(), 1);
+    if (flatness) w.number(std::bit_cast<std::uint64_t>(*flatness), 8);
+    return std::move(w.out);
+}
+
+PatchType PatchType::from_bytes(std::string_view bytes)
+{
+    Reader r(bytes);
+    PatchType out;
+    out.corner = r.ring();
+    for (auto& ring : out.beyond)
+        if (r.number(1, 1)) ring = r.ring();
+    out.crease_method = r.number(1, 1) ? CreaseMethod::Chaikin : CreaseMethod::Normal;
+    out.outer = r.sharpnesses(out.corner.edge_count());
+    Reader::check(out.outer.size() ==
+                  (out.crease_method == CreaseMethod::Chaikin ? out.corner.edge_count() : 0));
+    out.sectors = r.number(1, 1) ? SectorRules::Biermann : SectorRules::OpenSubdiv;
+    if (r.number(1, 1)) out.flatness = r.fraction();
+    r.end();
+    return out;
 }
 
 PatchType smooth_type(int faces)

@@ -1,11 +1,18 @@
 // Symmetry enforcement: entries of tables that patches share get equal bits (BOLZ03 2.1.1;
 // docs/math/subdivision.md, 5.5 and 5.6).
 //
+// Two patches that share a side have the same surface there, so a control point of both has the
+// same weights on it, and one that only one patch has has none. Along a side its tangents are equal
+// too, and across it opposite: both patches' point inwards. Not so on an infinitely sharp edge,
+// where each patch has a tangent of its own across, nor at the corner (0,0), whose tangents are
+// directions alone.
+//
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "pipeline/basis_tables/generator.h"
 
+#include <array>
 #include <span>
 
 namespace tessemu {
@@ -13,34 +20,62 @@ namespace tessemu {
 /// Tables of one patch type in single precision.
 struct PatchTypeTables {
     PatchType type;
-    int points = 0; ///< control points
-    /// As BasisTables has them.
+    int points = 0; ///< control points, each a vertex of its own
+    /// Of each control point of BasisTables, in its order: which of these it is. In tiny meshes two
+    /// of them may be one vertex.
+    std::vector<std::uint16_t> point_of;
+    std::vector<std::uint16_t> beyond; ///< as BasisTables has it
+    /// As BasisTables has them; of control points that are one vertex their sums.
     std::vector<float> position, du, dv;
 };
-PatchTypeTables in_single_precision(PatchType const& type, BasisTables const& tables);
+/// \param point_of  empty: each is one of its own
+PatchTypeTables in_single_precision(PatchType const& type, BasisTables const& tables,
+                                    std::vector<std::uint16_t> point_of = {});
 
-/// Counter-clockwise from the corner; the first and the last are on-corner.
+/// v = 0, u = 1, v = 1 and u = 0, each followed away from the patch's corner or the edges at it:
+/// Lower and Left from (0,0), Right from (1,0), Upper from (0,1).
 enum class PatchSide : std::uint8_t { Lower, Right, Upper, Left };
 
-/// Patches of types a and b, by number, share a side; they run along it in opposite directions.
+/// Sides of two types, by number, that are one: Lower of a with Left of b, or Right of a with Upper
+/// of b.
 struct Joint {
     std::uint32_t a;
-    PatchSide side_a;
+    PatchSide side; ///< of a: Lower or Right
     std::uint32_t b;
-    PatchSide side_b;
+    bool mirrored = false; ///< b is a's mirror image, or its own: not a neighbour
 
     auto operator<=>(Joint const&) const = default;
-    /// Of the two ways to write a joint the one with Lower or Right first.
-    bool is_canonical() const { return side_a == PatchSide::Lower || side_a == PatchSide::Right; }
 };
+
+/// What the types of one set of rules can share with each other, and with their mirror images; of
+/// types that nothing beyond has an influence on, and without finite sharpness.
+std::vector<Joint> possible_joints(std::span<PatchTypeTables const> types);
 
 struct SymmetryReport {
     std::size_t joints = 0;
-    std::size_t passes = 0;
+    /// Classes of equal table edges: a control point's weights along a side of a type.
+    struct Classes {
+        std::size_t table_edges = 0; ///< those not 0 throughout
+        std::size_t directed = 0;
+        std::size_t undirected = 0; ///< where a side reversed is the same too
+
+        bool operator==(Classes const&) const = default;
+    };
+    Classes off_corner;             ///< Right, Upper
+    Classes off_corner_at_a_tag;    ///< that end at an infinitely sharp edge
+    Classes on_corner;              ///< Lower, Left; of V, its ring and what lies beyond
+    Classes two_ring;               ///< the same, of (2,0), (2,1), (2,-1) and their mirror images
+    std::size_t entries = 0;        ///< of positions and tangents that were compared
+    std::size_t changed = 0;        ///< entries that got another value
+    std::size_t zeroed = 0;         ///< of these: roundings of 0
+    std::uint64_t changed_ulps = 0; ///< of the others, in all
+    std::uint32_t most_ulps = 0;    ///< of one entry
+    std::size_t passes = 0;         ///< until nothing changed
 };
 
-/// Entries of the tables that joints make equal get the least of them, of tangents the one nearest
-/// to 0, until nothing changes; weights of control points that the other patch lacks become 0.
+/// Entries that joints make equal get the least of their values, those of tangents the value
+/// nearest to 0 with its sign; of a control point that the other patch lacks they become 0. A
+/// sample on two sides is in the classes of both.
 SymmetryReport enforce_symmetry(std::span<PatchTypeTables> types, std::span<Joint const> joints);
 
 } // namespace tessemu

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/commands/command_list.h"
 
+#include <algorithm>
+#include <mutex>
+
 namespace tessemu {
 
 namespace {
@@ -57,7 +60,7 @@ DrawStatistics run_draw(Draw const& d, ThreadPool const& threads, CommandOptions
     options.progress = progress;
     options.stream_output = streams;
     std::optional<RasterTarget> own;
-    RasterTarget const* raster = d.shows_surface() ? o.raster : nullptr;
+    RasterTarget const* raster = d.target ? &*d.target : d.shows_surface() ? o.raster : nullptr;
     if (raster && d.rasterizer) {
         own = *raster;
         own->rasterizer = *d.rasterizer;
@@ -76,6 +79,53 @@ DrawStatistics run_draw(Draw const& d, ThreadPool const& threads, CommandOptions
     return s;
 }
 
+// Working memories, each of one thread at a time.
+class Memories {
+public:
+    std::unique_ptr<DrawMemory> take()
+    {
+        std::scoped_lock const lock(mutex_);
+        if (idle_.empty()) return std::make_unique<DrawMemory>();
+        std::unique_ptr<DrawMemory> m = std::move(idle_.back());
+        idle_.pop_back();
+        return m;
+    }
+    void give(std::unique_ptr<DrawMemory> m)
+    {
+        std::scoped_lock const lock(mutex_);
+        idle_.push_back(std::move(m));
+    }
+
+private:
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<DrawMemory>> idle_;
+};
+
+// Threads take runs of the draws. Counts are added run by run, so nothing tells how many threads
+// there were.
+DrawStatistics run_batch(DrawBatch const& batch, ThreadPool const& threads, CommandOptions const& o)
+{
+    constexpr std::size_t kRun = 16;
+    std::vector<DrawStatistics> runs((batch.count + kRun - 1) / kRun);
+    Memories memories;
+    threads.parallel_for(runs.size(), [&](std::size_t i) {
+        ThreadPool const caller{ThreadPool::Caller()};
+        std::unique_ptr<DrawMemory> memory = memories.take();
+        CommandOptions options;
+        options.vertex_cache = o.vertex_cache;
+        options.memory = memory.get();
+        for (std::size_t k = i * kRun; k < std::min(batch.count, (i + 1) * kRun); ++k) {
+            Draw const d = batch.draw(k);
+            assert(!d.shows_surface());
+            runs[i] += run_draw(d, caller, options, {});
+        }
+        memories.give(std::move(memory));
+    });
+    DrawStatistics all;
+    for (DrawStatistics const& run : runs) all += run;
+    return all;
+}
+
 } // namespace
 
 OutputLayout Draw::output() const
@@ -88,6 +138,13 @@ std::size_t CommandList::patches() const
     std::size_t n = 0;
     for_each_surface_draw([&](Draw const& d) { n += d.patches.size(); });
     return n;
+}
+
+bool CommandList::primitives_are_patches() const
+{
+    bool all = true;
+    for_each_surface_draw([&](Draw const& d) { all = all && !d.grid; });
+    return all;
 }
 
 SurfacePatch::SurfacePatch(Draw const& draw, ShadedPatch const& patch)
@@ -134,17 +191,22 @@ ListStatistics run_commands(CommandList const& list, ThreadPool const& threads,
     ListStatistics out;
     std::size_t const all = list.patches();
     std::size_t done = 0;
-    auto const count = [&](char const* kind, std::string const& name, DrawStatistics const& s) {
+    auto const count = [&](char const* kind, std::string const& name, DrawStatistics const& s,
+                           std::size_t number = 1) {
         out.total += s;
         bool const like = !out.commands.empty() && out.commands.back().kind == kind &&
                           out.commands.back().name == name;
         if (!like) out.commands.push_back({kind, name, 0, {}});
-        ++out.commands.back().number;
+        out.commands.back().number += number;
         out.commands.back().statistics += s;
     };
     for (Command const& c : list.commands) {
         if (Dispatch const* const d = std::get_if<Dispatch>(&c)) {
             count("dispatch", d->name, dispatch(d->shader, d->groups, threads));
+            continue;
+        }
+        if (DrawBatch const* const b = std::get_if<DrawBatch>(&c)) {
+            if (b->count) count("draw", b->name, run_batch(*b, threads, options), b->count);
             continue;
         }
         Draw const& d = std::get<Draw>(c);

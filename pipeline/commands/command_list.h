@@ -1,4 +1,4 @@
-// A frame as a list of commands, in order: dispatches and draws over buffers.
+// A frame as a list of commands, in order: dispatches, draws and batches of draws over buffers.
 //
 // A patch mesh makes the list, others change it: the Direct3D 10 path turns a draw into two, the
 // wire view adds a second drawing of each, a checker's test replaces a shader. Whatever fills a
@@ -17,6 +17,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include <functional>
 #include <optional>
 #include <variant>
 
@@ -57,6 +58,9 @@ struct Draw {
     GraphicsPipelineDesc pipeline;
     DrawCall call;
     std::vector<StreamOutputBuffer> stream_output = {};
+    /// Where it draws, whatever the run's target: it fills targets of the list's memory, so it runs
+    /// also where there is no picture, and shows no patches.
+    std::optional<RasterTarget> target = {};
     std::optional<RasterizerState> rasterizer = {}; ///< instead of the target's
     /// Of these, cache, memory, progress and streams are the run's and are overwritten.
     DrawOptions options = {};
@@ -76,7 +80,15 @@ struct Draw {
     bool has_curvature() const { return output().holds<CurvedVertex<float>>(); }
 };
 
-using Command = std::variant<Dispatch, Draw>;
+/// Draws that fill buffers and touch nothing in common, made when they run: in any order, several
+/// at once. Results and counts are as if one came after the other.
+struct DrawBatch {
+    std::string name; ///< what they draw or fill
+    std::size_t count = 0;
+    std::function<Draw(std::size_t)> draw; ///< of each number below `count`; called on any thread
+};
+
+using Command = std::variant<Dispatch, Draw, DrawBatch>;
 
 struct CommandList {
     std::vector<Command> commands;
@@ -103,6 +115,9 @@ struct CommandList {
     }
     /// Of all draws of the surface.
     std::size_t patches() const;
+    /// Whether SV_PrimitiveID tells a patch in all draws of the surface: instances have it of their
+    /// triangles.
+    bool primitives_are_patches() const;
 };
 
 /// A point of the surface in object space.
@@ -142,7 +157,7 @@ using SurfaceVisitor = std::function<void(SurfacePatch const&)>;
 
 /// Like commands in a row, and what they counted.
 struct CommandStatistics {
-    std::string kind; ///< "dispatch", "draw"
+    std::string kind; ///< "dispatch", "draw" (a batch's too)
     std::string name;
     std::uint64_t number = 0; ///< how many
     DrawStatistics statistics;

@@ -34,10 +34,12 @@ SkinBuffers skin_of(Pose const& pose)
 }
 
 VertexSource add_vertices(CommandList& list, RefinedMesh const& refined,
-                          SurfaceSettings const& settings, std::size_t texels)
+                          SurfaceSettings const& settings, std::size_t texels,
+                          std::array<float, 3> const& origin)
 {
     ControlMesh const& base = refined.base();
-    if (!settings.pose && refined.steps() == 0) return positions_of(base);
+    if (!settings.pose && refined.steps() == 0 && origin == std::array<float, 3>{})
+        return positions_of(base);
     constexpr std::size_t kStride = RWVectorBuffer::kStride;
     std::size_t const vertices = base.positions.size(),
                       first = refined.steps() ? refined.tables().back().first_face_point() : 0,
@@ -51,12 +53,14 @@ VertexSource add_vertices(CommandList& list, RefinedMesh const& refined,
         cs.rest = {positions_of(base).floats, 2, "rest_positions"};
         cs.moved = {std::span(*points).first(vertices * kStride), 3, "moved_positions"};
         cs.stride = int(kStride);
+        cs.origin = origin;
         list.commands.emplace_back(Dispatch{"skinning", bind_compute_shader(cs, settings.machine),
                                             groups_for(vertices, 64)});
     } else {
         for (std::size_t v = 0; v < vertices; ++v)
             for (int k = 0; k < 3; ++k)
-                (*points)[v * kStride + std::size_t(k)] = base.positions[v][k];
+                (*points)[v * kStride + std::size_t(k)] =
+                    base.positions[v][k] - origin[std::size_t(k)];
     }
     add_subdivision(list, refined.tables(), *points, settings.machine);
     return {std::span(*points).subspan(first * kStride), 3, int(kStride)};

@@ -77,10 +77,13 @@ SkinBuffers skin_of(Pose const& pose);
 /// of them.
 ///
 /// \param texels  at least so many vertices' room
+/// \param origin  taken off all positions before the first step; exact for multiples of a power of
+///                two near a mesh that is smaller than it
 /// \returns  the control mesh's own memory, without a command, where there is neither; else vertices
 ///           of four floats each, texels
 VertexSource add_vertices(CommandList& list, RefinedMesh const& mesh,
-                          SurfaceSettings const& settings, std::size_t texels = 0);
+                          SurfaceSettings const& settings, std::size_t texels = 0,
+                          std::array<float, 3> const& origin = {});
 
 /// The drawn mesh as one of its own.
 struct DrawnMesh {

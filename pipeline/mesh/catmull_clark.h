@@ -38,6 +38,8 @@ struct CatmullClark {
     {
         return (a + 6.0 * v + b) / 8.0;
     }
+    /// 3/8 - gamma (docs/math/subdivision.md, 5.2)
+    static double lean(double cos_theta) { return cos_theta / 4; }
 
     /// (n^2 v + 4 sum d + sum x) / (n (n + 5)) and LOOP09 3.3's two tangents; on a mesh of quads.
     template <class X, class Edge, class Face>
@@ -81,6 +83,43 @@ struct CatmullClark {
                (edge(0) + edge(std::size_t(k)));
         out += (to_vertex * (lambda - 0.5) + to_end) / determinant * v;
         return out;
+    }
+    /// sum 4 sin(t_j) e_j + (sin(t_j) + sin(t_(j+1))) f_j, j = 0 to k - 1,
+    /// t_j = j pi a/b + quarters pi/2 (docs/math/subdivision.md, 5.3)
+    template <class X, class Edge, class Face>
+    static X turning(int k, int a, int b, int quarters, X const& v, Edge const& edge,
+                     Face const& face)
+    {
+        auto const sine = [&](int j) { return sin_pi(2 * a * j + quarters * b, 2 * b); };
+        X out = 0.0 * v;
+        for (int j = 0; j < k; ++j) {
+            if (double const w = sine(j); w != 0) out += 4 * w * edge(std::size_t(j));
+            out += (sine(j) + sine(j + 1)) * face(std::size_t(j));
+        }
+        return out;
+    }
+    /// k > 1 (docs/math/subdivision.md, 5.3)
+    template <class X, class Edge, class Face>
+    static X crease_across_by_biermann(int k, X const& v, Edge const& edge, Face const& face)
+    {
+        double const c = cos_pi(1, k), s = sin_pi(1, k);
+        X out = turning(k, 1, k, 0, v, edge, face);
+        out -= 4 * s * v;
+        out -= (1 + c) / s * (1 + 2 * c) * (edge(0) + edge(std::size_t(k)));
+        return out;
+    }
+    /// Of [[gamma + c/8, h/8], [h/2, 1/4]] with (1, b), c = cos(theta), h = cos(theta/2).
+    static double mode_on_face(double lambda, double cos_half_theta)
+    {
+        return cos_half_theta / (2 * (lambda - 0.25));
+    }
+    /// The larger one of [[gamma + c/8, h/8], [h/2, 1/4]], c = cos(pi/k), h = cos(pi/2k), gamma of
+    /// theta = 3 pi/2k: of the mode sin(j pi/k).
+    static double concave_eigenvalue(int k)
+    {
+        double const on_edge = 0.375 - lean(cos_pi(3, 2 * k)) + cos_pi(1, k) / 8,
+                     h = cos_pi(1, 2 * k), apart = on_edge - 0.25;
+        return (on_edge + 0.25 + std::sqrt(apart * apart + h * h / 4)) / 2;
     }
 };
 

@@ -7,12 +7,17 @@
 //                                product points outwards; edge(j) and face(j) as in Ring
 //     crease_limit(a, v, b)      along a crease or boundary
 //     crease_across(k, v, edge, face)  of a crease vertex, into its k faces
+//     crease_across_by_biermann(k, v, edge, face)  the same by his rules
+//     turning(k, a, b, quarters, v, edge, face)  by his rules: of a sector of k faces, left
+//                                eigenvector of 1/2 that turns by theta = pi a/b from edge to edge,
+//                                from the sine of so many right angles at edge 0 on
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pipeline/mesh/subdivision.h"
+#include "pipeline/mesh/ring.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <valarray>
@@ -35,7 +40,8 @@ using RingWeights = std::valarray<double>;
 
 /// Left eigenvectors of a ring of n faces with one infinitely sharp edge, edge 0, under refinement:
 /// of the limit position, and the dominant ones that are even and odd under reflection in that
-/// edge. The odd one is the smooth vertex's, for that edge and the vertex do not count in it.
+/// edge. By OpenSubdiv's rules the odd one is the smooth vertex's, for that edge and the vertex do
+/// not count in it.
 struct DartMasks {
     RingWeights position, even, odd;
 };
@@ -43,7 +49,8 @@ struct DartMasks {
 /// By iteration of the transposed refinement, from the smooth vertex's masks. Exact but for rounding
 /// up to a hundred edges; beyond, the even tangent is not waited for: at 500 it is 1.5 degrees off.
 /// \cost  of order n^2, and up to 20,000 n
-template <class Masks> DartMasks dart_masks(std::size_t n)
+template <class Masks>
+DartMasks dart_masks(std::size_t n, SectorRules rules = SectorRules::OpenSubdiv)
 {
     std::size_t const size = 2 * n + 1;
     auto const unit = [&](std::size_t i) {
@@ -62,7 +69,8 @@ template <class Masks> DartMasks dart_masks(std::size_t n)
     RingSharpness sharp;
     sharp.edge.assign(n, 0);
     sharp.edge[0] = kInfinitelySharp;
-    Ring<RingWeights> const step = refined_ring<Masks>(ring, sharp);
+    sharp.biermann = rules == SectorRules::Biermann;
+    Ring<RingWeights> const step = split_ring<Masks>(ring, sharp);
     struct Entry {
         std::size_t row, column;
         double weight;
@@ -93,17 +101,25 @@ template <class Masks> DartMasks dart_masks(std::size_t n)
         }
         return w;
     };
+    auto const mirrored = [&](RingWeights const& w) {
+        RingWeights m = w;
+        for (std::size_t j = 0; j < n; ++j) {
+            m[1 + j] = w[1 + (n - j) % n];
+            m[1 + n + j] = w[2 * n - j];
+        }
+        return m;
+    };
     DartMasks out;
     out.odd = smooth[2];
+    if (sharp.biermann)
+        out.odd = dominant(smooth[2], [&](RingWeights& w) {
+            w -= mirrored(w);
+            w /= std::abs(w).max();
+        });
     out.position = dominant(smooth[0], [](RingWeights& w) { w /= w.sum(); });
     out.even = dominant(smooth[1], [&](RingWeights& w) {
         // Roundings would let an odd part grow, which may be the larger one.
-        RingWeights mirrored = w;
-        for (std::size_t j = 0; j < n; ++j) {
-            mirrored[1 + j] = w[1 + (n - j) % n];
-            mirrored[1 + n + j] = w[2 * n - j];
-        }
-        w += mirrored;
+        w += mirrored(w);
         w -= w.sum() * out.position;
         w /= std::abs(w).max();
     });
@@ -114,11 +130,18 @@ template <class Masks> DartMasks dart_masks(std::size_t n)
 template <class Masks> class Limits {
 public:
     /// \param ring   on a mesh of quads
-    /// \param sharp  of the same vertex; while finite sharpness is left the ring is refined further
+    /// \param sharp  of the same vertex; while finite sharpness is left, and where an edge leans
+    ///               away from the vertex, the ring is refined further
+    /// By Biermann's rules nothing else that is flattened may share a face with the vertex.
     template <class X> VertexLimit<X> of(Ring<X> ring, RingSharpness sharp)
     {
-        while (sharp.is_semi_sharp()) {
-            ring = refined_ring<Masks>(ring, sharp);
+        auto const leans_away = [](RingSharpness const& of) {
+            auto const leans = of.leans();
+            return std::any_of(leans.begin(), leans.end(),
+                               [](Lean const& l) { return l.end == 1; });
+        };
+        while (sharp.is_semi_sharp() || leans_away(sharp)) {
+            ring = split_ring<Masks>(ring, sharp);
             sharp = sharp.after_step();
         }
         std::size_t const n = ring.faces();
@@ -127,14 +150,22 @@ public:
         };
         auto const face = [&](std::size_t j) -> X const& { return ring.face[j % n]; };
         VertexRule const rule = sharp.rule();
-        std::vector<std::size_t> cuts;
-        for (std::size_t j = 0; j < sharp.edge.size(); ++j)
-            if (sharp.edge[j] > 0) cuts.push_back(j);
-        if (!sharp.open && !cuts.empty()) cuts.push_back(cuts[0] + n); // round to the first
-        if (rule == VertexRule::Dart) return dart(ring, cuts[0]);
-        if (cuts.empty()) {
+        std::vector<RingSector> const sectors = sharp.sectors();
+        auto const turning = [&](RingSector const& s, int quarters) {
+            return Masks::turning(
+                int(s.faces), s.turn, s.of, quarters, ring.vertex,
+                [&](std::size_t j) -> X const& { return edge(s.first + j); },
+                [&](std::size_t j) -> X const& { return face(s.first + j); });
+        };
+        bool const is_cut =
+            std::any_of(sharp.edge.begin(), sharp.edge.end(), [](float s) { return s > 0; });
+        if (rule == VertexRule::Dart) return dart(ring, sectors[0].first, sharp.biermann);
+        if (!is_cut) {
             auto [p, a, b] = Masks::limit(int(n), ring.vertex, edge, face);
-            if (rule == VertexRule::Corner) p = ring.vertex;
+            if (rule == VertexRule::Corner) {
+                p = ring.vertex;
+                if (sharp.biermann) a = turning(sectors[0], 1), b = turning(sectors[0], 0);
+            }
             return {p, rule, {{0, n, {a, b}}}};
         }
         auto const [a, b] = sharp.crease();
@@ -143,32 +174,41 @@ public:
                                : Masks::crease_limit(edge(a), ring.vertex, edge(b)),
                            rule,
                            {}};
-        for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-            std::size_t const first = cuts[i], k = cuts[i + 1] - first;
+        for (RingSector const& s : sectors) {
+            std::size_t const first = s.first, k = s.faces;
             X const &start = edge(first), &end = edge(first + k);
             auto const edge_of_side = [&](std::size_t j) -> X const& { return edge(first + j); };
             auto const face_of_side = [&](std::size_t j) -> X const& { return face(first + j); };
+            auto const across = [&]() -> X {
+                return sharp.biermann
+                           ? Masks::crease_across_by_biermann(int(k), ring.vertex, edge_of_side,
+                                                              face_of_side)
+                           : Masks::crease_across(int(k), ring.vertex, edge_of_side, face_of_side);
+            };
             // With one face the ring shrinks to the curve's plane: its eigenvalue 1/4 has one
             // eigenvector, to which the face's own difference adds more with each step.
             bool const ends = rule == VertexRule::Corner || k == 1;
-            out.sides.push_back(
-                ends ? Side<X>{first, k, {start - ring.vertex, end - ring.vertex}}
-                     : Side<X>{first,
-                               k,
-                               {start - end, Masks::crease_across(int(k), ring.vertex, edge_of_side,
-                                                                  face_of_side)}});
+            if (sharp.biermann && s.closed)
+                out.sides.push_back({first, k, {start - ring.vertex, turning(s, 0)}});
+            else if (s.concave)
+                out.sides.push_back({first, k, {end - ring.vertex, start - ring.vertex}});
+            else if (ends)
+                out.sides.push_back({first, k, {start - ring.vertex, end - ring.vertex}});
+            else
+                out.sides.push_back({first, k, {start - end, across()}});
         }
         return out;
     }
 
 private:
-    template <class X> using Side = typename VertexLimit<X>::Side;
-
-    template <class X> VertexLimit<X> dart(Ring<X> const& ring, std::size_t sharp_edge)
+    template <class X>
+    VertexLimit<X> dart(Ring<X> const& ring, std::size_t sharp_edge, bool biermann)
     {
         std::size_t const n = ring.faces();
-        auto [found, is_new] = darts_.try_emplace(n);
-        if (is_new) found->second = dart_masks<Masks>(n);
+        auto [found, is_new] = darts_.try_emplace({n, biermann});
+        if (is_new)
+            found->second =
+                dart_masks<Masks>(n, biermann ? SectorRules::Biermann : SectorRules::OpenSubdiv);
         DartMasks const& masks = found->second;
         auto const apply = [&](RingWeights const& w) {
             X sum = ring.vertex * w[0];
@@ -184,7 +224,7 @@ private:
                 {{0, n, {apply(masks.even), apply(masks.odd)}}}};
     }
 
-    std::map<std::size_t, DartMasks> darts_;
+    std::map<std::pair<std::size_t, bool>, DartMasks> darts_;
 };
 
 } // namespace tessemu

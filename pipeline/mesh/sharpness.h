@@ -1,5 +1,5 @@
 // Sharpness of edges and vertices, and the rules that follow from it: OpenSubdiv's semi-sharp
-// creases (docs/math/subdivision.md, 1.7).
+// creases (docs/math/subdivision.md, 1.7), and the sectors of Biermann's rules (5.2).
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -7,6 +7,7 @@
 #include "pipeline/mesh/topology.h"
 
 #include <array>
+#include <optional>
 
 namespace tessemu {
 
@@ -33,6 +34,23 @@ struct SharpEnd {
     float decremented_here(float sharpness) const;
 };
 
+/// Of a smooth edge by Biermann's rules: the end to which its point leans, which is the only one
+/// of the two where something is sharp.
+struct Lean {
+    int end = -1;         ///< 0 or 1; -1: neither
+    double cos_theta = 0; ///< of the angle of a face at that end
+};
+
+/// Faces at a vertex between two sharp edges, or all of them where fewer edges are sharp.
+struct RingSector {
+    std::size_t first, faces; ///< from edge `first` on, cyclic
+    bool closed;              ///< all faces; `first` is the sharp edge, if there is one
+    bool concave;
+    int turn, of; ///< by Biermann's rules a face has the angle theta = pi turn / of
+
+    double cos_theta() const;
+};
+
 /// The edges around a vertex, in the order of Topology::ring.
 struct RingSharpness {
     bool open = false;       ///< on the boundary: edge[0] and edge.back() are infinitely sharp
@@ -41,8 +59,18 @@ struct RingSharpness {
     // For Chaikin's rule; empty with the other.
     SharpEnd here;
     std::vector<SharpEnd> far_end; ///< of each edge, with it
+    // For Biermann's rules.
+    bool biermann = false;
+    std::optional<double> flatness;   ///< SubdivisionRules'
+    std::vector<std::size_t> concave; ///< first edges of concave sectors
+    /// By edge: theta's cosine at the far end, where something is sharp there; empty: nowhere is.
+    std::vector<std::optional<double>> far_cos_theta;
 
     VertexRule rule() const;
+    /// In the order of their first edges.
+    std::vector<RingSector> sectors() const;
+    /// By edge, end 0 the vertex; empty with OpenSubdiv's rules.
+    std::vector<Lean> leans() const;
     /// A finite sharpness is left: the surface is smoother here than the rule says.
     bool is_semi_sharp() const;
     /// The first sharp edge and the last: a crease's two.
@@ -68,7 +96,10 @@ class Sharpness {
 public:
     /// \param topology  outlives this. \cost  linear in the tags and, where there are some, in the
     ///                  corners of faces
-    explicit Sharpness(Topology const& topology);
+    /// \param is_cut    by vertex, of a mesh that is a piece of another: some of its faces are not in
+    ///                  the piece, so that the boundary there is none, and what is sharp there is
+    ///                  not known. Empty: no vertex. Outlives this.
+    explicit Sharpness(Topology const& topology, std::span<char const> is_cut = {});
 
     float edge(HalfEdge h) const
     {
@@ -84,17 +115,27 @@ public:
     }
     /// No tag on it or on an edge at it, but for the boundary.
     bool is_untagged(std::uint32_t v) const { return tagged_.empty() || !tagged_[v]; }
+    bool is_cut(std::uint32_t v) const { return !is_cut_.empty() && is_cut_[v]; }
     /// \param out  reused from call to call
     void around(std::uint32_t v, RingSharpness& out) const;
     /// Of the halves of an edge after a step: at the half-edge's vertex, and at the next.
     std::array<float, 2> halves(HalfEdge h) const;
+    /// End 0 is the half-edge's vertex.
+    Lean lean(HalfEdge h) const;
 
 private:
+    void add_tags();
+    void around_itself(std::uint32_t v, RingSharpness& out) const;
+
     Topology const* topology_;
+    std::span<char const> is_cut_;
     std::vector<float> edge_;   ///< by half-edge; empty: no creases
     std::vector<float> vertex_; ///< empty: no corners
     std::vector<char> tagged_;  ///< by vertex; empty: no tags
     std::vector<SharpEnd> end_; ///< by vertex; empty: Chaikin's rule is not needed
+    // Empty: OpenSubdiv's rules.
+    std::vector<char> is_sharp_;    ///< by vertex: it, or an edge at it
+    std::vector<double> cos_theta_; ///< by half-edge, of its face at its vertex if that is sharp
 };
 
 } // namespace tessemu

@@ -1,24 +1,12 @@
 // Subdivision by any scheme's masks: new points of a mesh, and of one vertex's ring as often as its
 // limit needs.
 //
-// A scheme is a traits class, Masks (see catmull_clark.h):
-//
-//     kFacePoints               whether faces' points are vertices of the refined mesh
-//     face(sum, sides)          point of a face, of the sum of its vertices
-//     edge(a, b, left, right, triangles)  of a smooth edge and the points of its faces, so many of
-//                               them triangles to be smoothed (`smoothtriangles smooth`)
-//     vertex(n, v, edges, faces)  of a smooth vertex, the sums of its edges' far ends and of its
-//                               faces' points
-//     crease_edge(a, b), crease_vertex(a, v, b)  along a crease or boundary
-//
-// Points are of any type X that can be added, and multiplied and divided by a number: positions,
-// or rows of weights. A triangle's third vertex is 3 F - a - b of its mean F, so Loop's edge points
-// are edge(a, b, F, F', 0) too. Where sharpness blends rules: docs/math/subdivision.md, 1.7.
+// Masks: see ring.h; limit.h and flatness.h for Biermann's rules (docs/math/subdivision.md, 5.2).
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pipeline/mesh/sharpness.h"
+#include "pipeline/mesh/flatness.h"
 
 namespace tessemu {
 
@@ -46,40 +34,32 @@ inline int triangles_to_smooth(Topology const& t, std::uint32_t face, std::uint3
     return (mesh.face(face).size() == 3) + (mesh.face(other).size() == 3);
 }
 
-/// Whether a vertex's new point lies between the points of two rules (vertex_point).
-inline bool is_blended(RingSharpness const& now)
+/// Calls f(flat, id) for each vertex whose ring a step flattens, by ascending vertex: id(i) is the
+/// number of the ring's point i among the new points.
+template <class Masks, class F>
+void each_flat_ring(Topology const& topology, Sharpness const& sharpness, EdgeNumbers const& edges,
+                    F const& f)
 {
-    VertexRule const rule = now.rule();
-    return rule != VertexRule::Smooth && rule != VertexRule::Dart && now.is_semi_sharp() &&
-           now.after_step().rule() != rule;
-}
-
-/// The new point of a vertex.
-///
-/// \param edge  far end of edge j
-/// \param face  point of face j
-/// \param n     faces around
-template <class Masks, class X, class Edge, class Face>
-X vertex_point(RingSharpness const& now, std::size_t n, X const& v, Edge const& edge,
-               Face const& face)
-{
-    auto const by_rule_of = [&](VertexRule rule, RingSharpness const& sharp) -> X {
-        if (rule == VertexRule::Corner) return v;
-        if (rule == VertexRule::Crease) {
-            auto const [a, b] = sharp.crease();
-            return Masks::crease_vertex(edge(a), v, edge(b));
-        }
-        X edges = edge(0), faces = face(0);
-        for (std::size_t j = 1; j < n; ++j) {
-            edges += edge(j);
-            faces += face(j);
-        }
-        return Masks::vertex(int(n), v, edges, faces);
-    };
-    if (!is_blended(now)) return by_rule_of(now.rule(), now);
-    RingSharpness const after = now.after_step();
-    double const w = fractional_weight(now, after);
-    return by_rule_of(after.rule(), after) * (1 - w) + by_rule_of(now.rule(), now) * w;
+    ControlMesh const& mesh = topology.mesh();
+    SubdivisionRules const& rules = mesh.rules;
+    if (rules.sectors != SectorRules::Biermann) return;
+    if (rules.flatness ? *rules.flatness == 0 : mesh.concave.empty()) return;
+    Limits<Masks> limits;
+    RingSharpness sharp;
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+        auto const ring = topology.ring(v);
+        if (ring.empty() || (!rules.flatness && sharpness.is_plain(v)) || sharpness.is_cut(v))
+            continue;
+        sharpness.around(v, sharp);
+        if (!is_flattened(sharp, ring.size())) continue;
+        auto const id = [&](std::size_t i) -> std::size_t {
+            if (i == 0) return mesh.faces() + edges.size() + v;
+            if (i <= ring.size()) return mesh.faces() + edges[ring[i - 1]];
+            if (i <= sharp.edge.size()) return mesh.faces() + edges[topology.previous(ring.back())];
+            return topology.face_of(ring[i - 1 - sharp.edge.size()]);
+        };
+        f(flat_ring<Masks>(sharp, ring.size(), limits), id);
+    }
 }
 
 /// The points after a step.
@@ -114,8 +94,9 @@ std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpne
             continue;
         }
         std::uint32_t const f = topology.face_of(h), g = topology.face_of(other);
-        X const smooth =
+        X smooth =
             Masks::edge(a, b, face_point[f], face_point[g], triangles_to_smooth(topology, f, g));
+        lean<Masks>(smooth, sharpness.lean(h), b, a);
         out.push_back(w == 0 ? smooth : smooth * (1 - w) + Masks::crease_edge(a, b) * w);
     }
     RingSharpness plain, sharp;
@@ -136,54 +117,33 @@ std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpne
         if (!is_plain) sharpness.around(v, sharp);
         out.push_back(vertex_point<Masks>(is_plain ? plain : sharp, ring.size(), x[v], edge, face));
     }
+    if constexpr (Masks::kFacePoints) {
+        std::vector<std::pair<std::size_t, X>> moves; // all of the points as they are
+        each_flat_ring<Masks>(
+            topology, sharpness, edges, [&](FlatRing const& flat, auto const& id) {
+                flat.moves([&](std::size_t i) -> X const& { return out[id(i)]; },
+                           [&](std::size_t i, X by) { moves.emplace_back(id(i), std::move(by)); });
+            });
+        for (auto const& [i, by] : moves) out[i] += by;
+    }
     return out;
 }
 
-/// A vertex, its edges' far ends and, where its faces are quads, their opposite vertices; edges and
-/// faces as in RingSharpness.
-template <class X> struct Ring {
-    X vertex;
-    std::vector<X> edge, face;
-
-    std::size_t faces() const { return face.size(); }
-    X const& edge_after(std::size_t face_index) const
-    {
-        return edge[face_index + 1 < edge.size() ? face_index + 1 : 0];
-    }
-    std::size_t face_before(std::size_t edge_index) const
-    {
-        return (edge_index == 0 ? face.size() : edge_index) - 1;
-    }
-};
-
 /// The ring of the same vertex after a step: it depends on nothing further away.
+///
+/// By Biermann's rules, on a ring as a step leaves it: where nothing else that is flattened shares
+/// a face with the vertex.
 template <class Masks, class X>
 Ring<X> refined_ring(Ring<X> const& ring, RingSharpness const& sharp)
 {
-    std::vector<X> face_point;
-    for (std::size_t j = 0; j < ring.faces(); ++j) {
-        X sum = ring.vertex;
-        sum += ring.edge[j];
-        sum += ring.face[j];
-        sum += ring.edge_after(j);
-        face_point.push_back(Masks::face(sum, 4));
-    }
-    auto const edge = [&](std::size_t j) -> X const& { return ring.edge[j]; };
-    auto const face = [&](std::size_t j) -> X const& { return face_point[j]; };
-    Ring<X> out{vertex_point<Masks>(sharp, ring.faces(), ring.vertex, edge, face), {}, {}};
-    for (std::size_t j = 0; j < ring.edge.size(); ++j) {
-        float const s = sharp.edge[j];
-        double const w = s > 0 ? crease_weight(s, sharp.halves(j)) : 0;
-        X const middle = Masks::crease_edge(ring.vertex, ring.edge[j]);
-        if (w == 1) {
-            out.edge.push_back(middle);
-            continue;
-        }
-        X const smooth = Masks::edge(ring.vertex, ring.edge[j], face_point[j],
-                                     face_point[ring.face_before(j)], 0);
-        out.edge.push_back(w == 0 ? smooth : smooth * (1 - w) + middle * w);
-    }
-    out.face = std::move(face_point);
+    Ring<X> out = split_ring<Masks>(ring, sharp);
+    if (!is_flattened(sharp, ring.faces())) return out;
+    Limits<Masks> limits;
+    std::vector<std::pair<std::size_t, X>> moves;
+    flat_ring<Masks>(sharp, ring.faces(), limits)
+        .moves([&](std::size_t i) -> X const& { return out.point(i); },
+               [&](std::size_t i, X by) { moves.emplace_back(i, std::move(by)); });
+    for (auto const& [i, by] : moves) out.point(i) += by;
     return out;
 }
 

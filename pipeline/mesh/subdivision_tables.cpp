@@ -3,60 +3,16 @@
 
 #include "emu/compute_shader.h"
 #include "pipeline/mesh/catmull_clark.h"
+#include "pipeline/mesh/weighted_sum.h"
 
-#include <algorithm>
+#include <map>
 
 namespace tessemu {
 
 namespace {
 
-// A point as a sum of weighted points of the buffer: what the masks blend where numbers will not
-// do.
-class Sum {
-public:
-    Sum() = default;
-    explicit Sum(std::uint32_t point) : terms_{{point, 1}} {}
-
-    struct Term {
-        std::uint32_t point;
-        double weight;
-    };
-    /// By ascending point, each once.
-    std::vector<Term> terms() const
-    {
-        std::vector<Term> sorted = terms_, out;
-        std::stable_sort(sorted.begin(), sorted.end(),
-                         [](Term const& a, Term const& b) { return a.point < b.point; });
-        for (Term const& t : sorted)
-            if (!out.empty() && out.back().point == t.point)
-                out.back().weight += t.weight;
-            else
-                out.push_back(t);
-        return out;
-    }
-
-    Sum& operator+=(Sum const& o)
-    {
-        terms_.insert(terms_.end(), o.terms_.begin(), o.terms_.end());
-        return *this;
-    }
-    Sum& operator*=(double s)
-    {
-        for (Term& t : terms_) t.weight *= s;
-        return *this;
-    }
-    friend Sum operator+(Sum a, Sum const& b) { return a += b; }
-    friend Sum operator*(Sum a, double s) { return a *= s; }
-    friend Sum operator*(double s, Sum a) { return a *= s; }
-    friend Sum operator/(Sum a, double s)
-    {
-        for (Term& t : a.terms_) t.weight /= s;
-        return a;
-    }
-
-private:
-    std::vector<Term> terms_;
-};
+// What the masks blend where numbers will not do: points of the buffer.
+using Sum = WeightedSum;
 
 class Builder {
 public:
@@ -94,12 +50,14 @@ public:
             for (std::uint32_t p : {old(a), face_point(f), old(b), face_point(g)})
                 out_.edge_index.push_back(p);
             int const triangles = triangles_to_smooth(topology_, f, g);
-            if (w == 0 && triangles == 0) continue;
+            Lean const by = sharpness_.lean(h);
+            if (w == 0 && triangles == 0 && by.end < 0) continue;
             Sum point = CatmullClark::edge(Sum(old(a)), Sum(old(b)), Sum(face_point(f)),
                                            Sum(face_point(g)), triangles);
+            lean<CatmullClark>(point, by, Sum(old(b)), Sum(old(a)));
             if (w != 0)
                 point = point * (1 - w) + CatmullClark::crease_edge(Sum(old(a)), Sum(old(b))) * w;
-            add_blended(out_.first_edge_point() + e, point);
+            blended_[out_.first_edge_point() + e] = std::move(point);
         }
     }
 
@@ -134,31 +92,100 @@ public:
                 }
             }
             if (is_plain || ring.empty() || !is_blended(sharp)) continue;
-            add_blended(out_.first_vertex_point() + v,
-                        vertex_point<CatmullClark>(
-                            sharp, ring.size(), Sum(old(v)),
-                            [&](std::size_t j) { return Sum(edge(j)); },
-                            [&](std::size_t j) { return Sum(face(j)); }));
+            blended_[out_.first_vertex_point() + v] = vertex_point<CatmullClark>(
+                sharp, ring.size(), Sum(old(v)), [&](std::size_t j) { return Sum(edge(j)); },
+                [&](std::size_t j) { return Sum(face(j)); });
+        }
+    }
+
+    void flatten(EdgeNumbers const& edges)
+    {
+        std::vector<std::pair<std::uint32_t, Sum>> moves; // all of the points as they are
+        each_flat_ring<CatmullClark>(
+            topology_, sharpness_, edges, [&](FlatRing const& flat, auto const& id) {
+                auto const number = [&](std::size_t i) {
+                    return out_.first_face_point() + std::uint32_t(id(i));
+                };
+                flat.moves(
+                    [&](std::size_t i) { return new_point(number(i)); },
+                    [&](std::size_t i, Sum by) { moves.emplace_back(number(i), std::move(by)); });
+            });
+        for (auto const& [point, by] : moves) {
+            auto const [row, is_new] = blended_.try_emplace(point);
+            if (is_new) row->second = new_point_of_kernels(point);
+            row->second += by;
+        }
+    }
+
+    /// Face points that are blended themselves give way to the vertices that they are made of.
+    void finish_blended()
+    {
+        SubdivisionTables::Blended& b = out_.blended;
+        for (auto const& [target, sum] : blended_) {
+            Sum all;
+            for (WeightedSum::Term const& t : sum.terms())
+                all += (is_face_point(t.point) && blended_.count(t.point)
+                            ? new_point_of_kernels(t.point)
+                            : Sum(t.point)) *
+                       t.weight;
+            b.target.push_back(target);
+            for (WeightedSum::Term const& t : all.terms()) {
+                b.points.push_back(t.point);
+                b.weights.push_back(float(t.weight));
+            }
+            b.first.push_back(std::uint32_t(b.points.size()));
         }
     }
 
 private:
     std::uint32_t old(std::uint32_t v) const { return out_.first + v; }
     std::uint32_t face_point(std::uint32_t f) const { return out_.first_face_point() + f; }
-    void add_blended(std::uint32_t target, Sum const& sum)
+    bool is_face_point(std::uint32_t point) const
     {
-        SubdivisionTables::Blended& b = out_.blended;
-        b.target.push_back(target);
-        for (Sum::Term const& t : sum.terms()) {
-            b.points.push_back(t.point);
-            b.weights.push_back(float(t.weight));
+        return point >= out_.first_face_point() && point < out_.first_edge_point();
+    }
+    Sum new_point(std::uint32_t point) const
+    {
+        auto const row = blended_.find(point);
+        return row != blended_.end() ? row->second : new_point_of_kernels(point);
+    }
+    // From old vertices and face points; a face point from old vertices.
+    Sum new_point_of_kernels(std::uint32_t point) const
+    {
+        auto const sum_of = [](std::span<std::uint32_t const> index) {
+            Sum sum;
+            for (std::uint32_t p : index) sum += Sum(p);
+            return sum;
+        };
+        ControlMesh const& mesh = topology_.mesh();
+        if (is_face_point(point)) {
+            std::uint32_t const f = point - out_.first_face_point(),
+                                sides = std::uint32_t(mesh.face(f).size());
+            auto const corners = std::span(out_.face_index).subspan(mesh.face_start[f], sides);
+            return CatmullClark::face(sum_of(corners), int(sides));
         }
-        b.first.push_back(std::uint32_t(b.points.size()));
+        if (point < out_.first_vertex_point()) {
+            std::size_t const e = point - out_.first_edge_point();
+            return sum_of(std::span(out_.edge_index).subspan(4 * e, 4)) / 4;
+        }
+        std::uint32_t const v = point - out_.first_vertex_point();
+        auto const index =
+            std::span(out_.vertex_index).subspan(out_.vertex_offset_valence[2 * std::size_t(v)]);
+        std::uint32_t const n = out_.vertex_offset_valence[2 * std::size_t(v) + 1];
+        if (n == 0) return Sum(old(v));
+        if (n == 1) return CatmullClark::crease_vertex(Sum(index[0]), Sum(old(v)), Sum(index[1]));
+        Sum ends, faces;
+        for (std::uint32_t j = 0; j < n; ++j) {
+            ends += Sum(index[2 * j]);
+            faces += Sum(index[2 * j + 1]);
+        }
+        return CatmullClark::vertex(int(n), Sum(old(v)), ends, faces);
     }
 
     Topology const& topology_;
     Sharpness const& sharpness_;
     SubdivisionTables& out_;
+    std::map<std::uint32_t, Sum> blended_; // by new point
 };
 
 } // namespace
@@ -187,6 +214,8 @@ SubdivisionTables catmull_clark_tables(Topology const& topology, Sharpness const
     builder.add_faces(only_quads);
     builder.add_edges(edges);
     builder.add_vertices();
+    builder.flatten(edges);
+    builder.finish_blended();
     return out;
 }
 

@@ -11,8 +11,9 @@
 // A boundary edge, and any edge that stays sharp, has both its ends twice: their middle. A vertex on
 // a boundary or between two sharp edges has valence 1 and its two neighbours along them, one that
 // stays where it is valence 0 and none: these are LOOP10's encodings, and sharp tags fit them. What
-// does not fit is `blended`: points between two rules where a sharpness ends in this step, and edge
-// points at triangles to be smoothed, as sums of weighted points.
+// does not fit is `blended`, as sums of weighted points: points between two rules where a sharpness
+// ends in this step, edge points at triangles to be smoothed, and by Biermann's rules those that lean
+// to an end and those that are flattened.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -32,7 +33,8 @@ struct SubdivisionTables {
     std::vector<std::uint32_t> vertex_offset_valence; ///< [vertex][2]
     std::vector<std::uint32_t> vertex_index;
 
-    /// Sums over old vertices and face points, written last, over what the kernels above made.
+    /// Sums over old vertices and face points, written last, over what the kernels above made. None
+    /// reads a point that another one writes.
     struct Blended {
         std::vector<std::uint32_t> target;   ///< [row]: the new point
         std::vector<std::uint32_t> first{0}; ///< [row + 1]: where its terms begin

@@ -20,10 +20,12 @@
 
 namespace tessemu {
 
+class BasisTableStore;
+
 /// A free choice that a user may set: a number within limits, or one of some words.
 struct SchemeParameter {
     std::string name, meaning;
-    std::optional<double> default_value = 0; ///< none: it has no value unless it is given
+    std::optional<double> default_value = 0.0; ///< none: has a value only where one is given
     double min = -std::numeric_limits<double>::infinity();
     double max = std::numeric_limits<double>::infinity();
     std::vector<std::string> words = {}; ///< not empty: one of these, the first by default
@@ -35,7 +37,7 @@ public:
     using Value = std::variant<double, std::string>;
 
     double number(std::string const& name) const { return std::get<double>(values_.at(name)); }
-    /// Of one that has no default: none where it was not given.
+    /// Of a number that has no default.
     std::optional<double> number_if_given(std::string const& name) const
     {
         auto const found = values_.find(name);
@@ -84,6 +86,13 @@ struct SchemeInfo {
     std::string no_curvature = "its domain shaders give no second derivatives";
 };
 
+/// What a scheme may use while it builds; each may be none.
+struct BuildServices {
+    BasisTableStore* tables = nullptr; ///< where basis-function tables are kept
+    WarningSink warn = {};             ///< hears what is worth telling before the build is done
+    RefinementProgress progress = {};
+};
+
 class Scheme {
 public:
     virtual ~Scheme() = default;
@@ -96,8 +105,10 @@ public:
     }
     /// \param mesh        that meets info().takes
     /// \param parameters  all of info().parameters
+    /// \param services    not kept
     virtual std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
-                                             Parameters const& parameters) const = 0;
+                                             Parameters const& parameters,
+                                             BuildServices const& services) const = 0;
 };
 
 /// All schemes in the order of the papers.
@@ -141,6 +152,7 @@ struct BuildOptions {
     /// Hears the warnings, those before an error before it is thrown.
     WarningSink warn = {};
     RefinementProgress progress = {};
+    BasisTableStore* tables = nullptr; ///< for schemes that use some
 };
 
 /// Joins vertices if asked to, makes the mesh a manifold, checks it, sorts and refines it as options

@@ -47,6 +47,7 @@ template <class Epilog> struct TableVertexShader {
     Buffer<std::uint32_t> places;  ///< [vertex]: x + (y << 8); none: row after row
     int level = 0;                 ///< 2^level segments along an edge
     bool has_poles = false, has_creases = false;
+    std::array<float, 3> origin{}; ///< of the positions' target
     Epilog epilog;
 
     std::vector<ResourceInfo> resources() const
@@ -71,7 +72,9 @@ template <class Epilog> struct TableVertexShader {
         Normal<T> const n = normal<T>(patch, x, y, i, j);
         T const step(1.0f / float(1 << level));
         DomainInput<T> const at{T(T(x) * step), T(T(y) * step), T(0), patch};
-        float3<T> const position(p.x, p.y, p.z);
+        float3<T> position(p.x, p.y, p.z);
+        if (origin != std::array<float, 3>{})
+            position = position + float3<T>(T(origin[0]), T(origin[1]), T(origin[2]));
         if constexpr (requires { epilog.height; }) {
             float3<T> const moving = moving_normal<T>(patch, x, y, n);
             Routine<T> const here("table_epilog"); // whatever was skipped for this patch
@@ -133,7 +136,9 @@ private:
         mask_of<T> const at_corner = (x == Int(0)) & (y == Int(0));
         otherwise = select(at_corner, of_corner, otherwise);
         direction = select(at_corner | is_pole, float3<T>(T(0), T(0), T(0)), direction);
-        return {unit_or(direction, [&] { return otherwise; }), is_pole};
+        // Of products that are 0 the sign depends on the patch: + 0 makes it +.
+        float3<T> const zero(T(0), T(0), T(0));
+        return {unit_or(direction, [&] { return otherwise; }) + zero, is_pole};
     }
 
     /// The points that have a pole's normal: corners that are one, edges between two that are the
@@ -191,9 +196,10 @@ private:
                 },
                 out);
         }
+        // At the corner that of all sides, or the only one's.
         std::int32_t const shared = word<T>(patch, TablePatchWords::kShared);
-        if (shared == none) return out;
-        return select((x == Int(0)) & (y == Int(0)), load_vector<T>(shared_normals, shared), out);
+        float3<T> const at_corner = shared == none ? n : load_vector<T>(shared_normals, shared);
+        return select((x == Int(0)) & (y == Int(0)), at_corner, out);
     }
 };
 

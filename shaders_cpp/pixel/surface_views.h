@@ -97,6 +97,8 @@ struct PatchPixelShader {
     template <class T> using Input = SurfaceAttributes<T>;
     std::array<float, 3> color{0.7f, 0.7f, 0.7f};
     std::array<float, 3> light{0.48f, 0.6f, 0.64f};
+    /// Of a patch: the least, and what each of 255 steps adds.
+    float brightness = 0.78f, step = float(0.32 / 255);
 
     template <class T>
     float4<T> operator()(PixelInput<T> const& pixel, SurfaceAttributes<T> const& in) const
@@ -104,7 +106,7 @@ struct PatchPixelShader {
         using Int = int_of<T>;
         T const bright = patch_light(pixel, in, light);
         Int const hash = (pixel.primitive_id * Int(0x9e3779b)) >> Int(20);
-        T const variation = T(0.78) + T(0.32 / 255) * T(hash & Int(255));
+        T const variation = T(brightness) + T(step) * T(hash & Int(255));
         T const shade = variation * bright;
         return {saturate(T(T(color[0]) * shade)), saturate(T(T(color[1]) * shade)),
                 saturate(T(T(color[2]) * shade)), T(1)};

@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/limit_surface.h"
 #include "io/model.h"
+#include "pipeline/mesh/biermann.h"
 #include "pipeline/mesh/catmull_clark.h"
 #include "pipeline/mesh/limit.h"
 #include "tests/support/files.h"
@@ -295,6 +296,58 @@ TEST(TaggedLimit, DoesNotDependOnTheLevel)
     EXPECT_GT(normals, 10000u);
 }
 
+// By Biermann's rules too, with every flatness, and at vertices with 5 faces and more as well, whose
+// tangents are halved whatever the tags; but not on a crease beside one face, which has no second
+// tangent. Where a step flattens, weights add up to 5 in absolute value, and rounding with them.
+TEST(TaggedLimit, OfBiermannsRulesDoesNotDependOnTheLevelEither)
+{
+    std::size_t points = 0, normals = 0, concave = 0;
+    std::optional<double> const flatness[] = {{}, 0.0, 0.5, 1.0};
+    for (std::uint32_t seed = 1; seed <= 24; ++seed) {
+        ControlMesh mesh = test::random_mesh(seed);
+        if (seed % 3 == 0) mesh = test::join_faces(mesh, seed);
+        mesh = test::with_random_tags(mesh, seed);
+        for (auto& c : mesh.creases) c.sharpness = c.sharpness > 2 ? kInfinitelySharp : 0;
+        for (auto& c : mesh.corners) c.sharpness = c.sharpness > 2 ? kInfinitelySharp : 0;
+        mesh.rules.sectors = SectorRules::Biermann;
+        mesh.rules.flatness = flatness[seed % 4];
+        mark_concave_sectors(mesh);
+        concave += mesh.concave.size();
+        Topology const topology(mesh);
+        Sharpness const sharpness(topology);
+        LimitSurface const coarse(topology, 1), fine(topology, 3);
+        double const reach = reach_of(mesh);
+        RingSharpness around;
+        auto const has_normal = [&](std::uint32_t v) {
+            sharpness.around(v, around);
+            auto const sides = around.sectors();
+            return around.rule() != VertexRule::Crease ||
+                   std::all_of(sides.begin(), sides.end(),
+                               [](RingSector const& s) { return s.faces > 1; });
+        };
+        for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
+            if (!coarse.has_grid(f)) continue;
+            for (int i = 0; i <= 2; ++i)
+                for (int j = 0; j <= 2; ++j) {
+                    std::uint32_t const a = coarse.vertex(f, i, j),
+                                        b = fine.vertex(f, 4 * i, 4 * j);
+                    double const apart = glm::length(coarse.positions()[a] - fine.positions()[b]);
+                    EXPECT_LE(apart, 5 * 14 * 81 * 0x1p-53 * reach) << seed << " " << f;
+                    ++points;
+                    if (i % 2 == 0 && j % 2 == 0 &&
+                        !has_normal(mesh.face(f)[std::size_t(j == 0 ? i / 2 : 3 - i / 2)]))
+                        continue;
+                    EXPECT_LE(glm::length(coarse.normals()[a] - fine.normals()[b]), 1e-6)
+                        << seed << " " << f << " " << i << " " << j;
+                    ++normals;
+                }
+        }
+    }
+    EXPECT_GT(points, 4000u);
+    EXPECT_GT(normals, 4000u);
+    EXPECT_GT(concave, 10u);
+}
+
 // A cube all of whose edges are sharp is itself. Its corners lie a quarter of the diagonal from
 // those of the smooth limit: (1 - 1/2) of the way to the centre, half a diagonal off, where
 // (n^2 v + 4 sum d + sum x)/(n(n+5)) of n = 3 is (9 + 4 + (-1))/24 = 1/2 of v. A tangent across an
@@ -352,6 +405,41 @@ TEST(TaggedLimit, AFlatSheetHasOneNormalWhateverIsSharp)
         }
     }
     EXPECT_GT(compared, 5000u);
+}
+
+// By Biermann's rules its inner corner is concave, and flat by its flatness: its normals point
+// outwards still. Nothing is folded, and the L is covered: 1024 quads of coordinates of up to 4.
+TEST(TaggedLimit, AConcaveCornerOfAFlatSheetStaysInItAndFacesOutwards)
+{
+    for (std::optional<double> flatness : {std::optional<double>(), std::optional(0.0)}) {
+        ControlMesh sheet;
+        for (int y = 0; y < 5; ++y)
+            for (int x = 0; x < 5; ++x) sheet.positions.emplace_back(float(x), float(y), 0.0f);
+        for (std::uint32_t y = 0; y < 4; ++y)
+            for (std::uint32_t x = 0; x < 4; ++x) {
+                if (x > 1 && y > 1) continue;
+                std::uint32_t const a = 5 * y + x;
+                sheet.add_face(std::vector{a, a + 1, a + 6, a + 5});
+            }
+        sheet.corners.push_back({12, kInfinitelySharp});
+        sheet.rules.sectors = SectorRules::Biermann;
+        sheet.rules.flatness = flatness;
+        EXPECT_EQ(mark_concave_sectors(sheet).several_faces, 1u);
+        Topology const topology(sheet);
+        LimitSurface const limit(topology, 4);
+        double area = 0;
+        for (LimitSurface::Quad const& q : limit.quads()) {
+            auto const at = [&](int k) { return limit.positions()[q[std::size_t(k)]]; };
+            double const twice = cross(at(2) - at(0), at(3) - at(1)).z;
+            EXPECT_GT(twice, 0) << "folded";
+            area += twice / 2;
+        }
+        EXPECT_NEAR(area, 12, 1e-12); // each of its other corners has one face and stays
+        for (std::size_t p = 0; p < limit.positions().size(); ++p) {
+            EXPECT_EQ(limit.positions()[p].z, 0);
+            EXPECT_EQ(limit.normals()[p], Vec(0, 0, 1)) << p;
+        }
+    }
 }
 
 // Iterated refinement of a dart's ring against its masks: the limit is what the ring tends to, and

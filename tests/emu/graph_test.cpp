@@ -3,6 +3,7 @@
 
 #include "emu/memory.h"
 #include "emu/tally.h"
+#include "emu/texture.h"
 
 #include <gtest/gtest.h>
 
@@ -209,8 +210,63 @@ TEST(GraphMemory, AnIntegerIsRecordedAndFollowed)
     EXPECT_EQ(g.loads(), 1u);
 }
 
+TEST(GraphMemory, AConstantBuffersConstantIsOneNodeAndNoLoad)
+{
+    ExpressionGraph g;
+    std::vector<float> const first{1, 2, 3}, second{1, 2, 3};
+    ConstantBuffer<float> const a(first, &g), again(first, &g), b(second, &g);
+    Graph const one = load<Graph>(a, 1);
+    EXPECT_EQ(g.nodes()[std::size_t(one.id)], (ExpressionGraph::Node{Op::Uniform, 0, 1}));
+    EXPECT_EQ(one.id, load<Graph>(again, 1).id);
+    EXPECT_NE(one.id, load<Graph>(a, 2).id);
+    EXPECT_NE(one.id, load<Graph>(b, 1).id);
+    EXPECT_EQ(g.nodes().size(), 3u);
+    EXPECT_EQ(g.loads(), 0u);
+    EXPECT_EQ(g.written(), FlopCount{});
+}
+
+TEST(GraphMemory, ATexelIsOneLoadOfFourNodesWhoseOperandsAreThePoint)
+{
+    ExpressionGraph g;
+    Texture2D const a(std::span<float const>(), 4, 4, 2, "a", 1, 1, &g),
+        b(std::span<std::byte const>(), Format::R32_FLOAT, 4, 4, 4, 3, "b", &g);
+    Graph const x = Graph::input(g), y = Graph::input(g);
+    float4<Graph> const t = fetch_texel<Graph>(a, {x, y + x});
+    std::set<int> const ids{t.x.id, t.y.id, t.z.id, t.w.id};
+    EXPECT_EQ(ids.size(), 4u);
+    auto const& n = g.nodes()[std::size_t(t.z.id)];
+    EXPECT_EQ(n.op, Op::Texel);
+    EXPECT_EQ(n.a, x.id);
+    EXPECT_EQ(n.c, 2);
+    EXPECT_EQ(g.nodes()[std::size_t(n.b)].op, Op::Add);
+    EXPECT_EQ(g.loads(), 1u);
+    EXPECT_EQ(fetch_texel<Graph>(a, {x, y + x}).w.id, t.w.id);
+    EXPECT_EQ(g.loads(), 1u);
+    EXPECT_NE(fetch_texel<Graph>(b, {x, y + x}).w.id, t.w.id);
+    EXPECT_NE(fetch_texel<Graph>(a, {y + x, x}).w.id, t.w.id);
+    EXPECT_EQ(g.loads(), 3u);
+    // Load by number is a texel at a constant point.
+    float4<Graph> const l = load<Graph>(a, 1, 2);
+    auto const& m = g.nodes()[std::size_t(l.x.id)];
+    EXPECT_EQ(g.nodes()[std::size_t(m.a)].constant(), 1.0f);
+    EXPECT_EQ(g.nodes()[std::size_t(m.b)].constant(), 2.0f);
+    EXPECT_NE(load<Graph>(a, 1, 2, 1).x.id, l.x.id);
+    EXPECT_NE(load<Graph>(a, 1, 2, 0, 1).x.id, l.x.id);
+    // A product that a texel's point takes as well is not fused.
+    Graph const p = x * y;
+    (void)fetch_texel<Graph>(a, {p, y});
+    (void)(p + x);
+    EXPECT_EQ(g.fused(), (FlopCount{.add = 2, .mul = 1}));
+}
+
 TEST(GraphMemory, WithoutARecordingMemoryHoldsConstants)
 {
+    std::vector<float> const colors{5, 6, 7, 8};
+    EXPECT_EQ(
+        fetch_texel<Graph>(Texture2D(colors, 1, 1, 0, "t"), {Graph(0.5f), Graph(0.5f)}).z.constant,
+        7);
+    EXPECT_EQ(load<Graph>(ConstantBuffer<float>(colors), 3).constant, 8);
+    EXPECT_EQ(load<Graph>(ConstantBuffer<float>(colors), 4).constant, 0); // R141
     std::vector<float> const numbers{1, 2, 3, 4};
     Buffer<float> const buffer(numbers, 0, "numbers");
     EXPECT_EQ(load<Graph>(buffer, 2).graph, nullptr);

@@ -3,15 +3,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/commands/command_list.h"
 
+#include "emu/texture.h"
 #include "io/model.h"
+#include "pipeline/commands/direct3d10.h"
 #include "pipeline/frame.h"
 #include "pipeline/mesh/catmull_clark.h"
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/edges.h"
+#include "tests/support/scene.h"
 #include "tests/support/show_point.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <map>
@@ -173,6 +177,157 @@ TEST(CommandList, FilteringDrawsOfTheSurfaceLeavesWhatFillsBuffers)
     EXPECT_NE(
         surface(frame_commands(*m.patches, s, surface_settings(s))).begin()->second,
         surface(frame_commands(*m.patches, posed(m), surface_settings(posed(m)))).begin()->second);
+}
+
+// ---- draws into targets of their own
+
+// A number at every pixel; texel (x, y) of the table in blue.
+struct Numbered {
+    template <class T> using Input = test::SceneValue<T>;
+    float number;
+    Texture2D table;
+    std::vector<ResourceInfo> resources() const { return {table.info()}; }
+    template <class T>
+    float4<T> operator()(PixelInput<T> const& pixel, test::SceneValue<T> const& in) const
+    {
+        T const texel = fetch_texel<T>(table, {pixel.position.x, pixel.position.y}).x;
+        return {T(number) + in.value.x, in.value.y, texel, T(1)};
+    }
+};
+
+// Cells of 9 x 9 pixels, a draw of two triangles for each.
+struct Cells {
+    static constexpr int kColumns = 8, kRows = 12, kCell = 9;
+    std::vector<float> vertices, table = std::vector<float>(kColumns * kCell * kRows * kCell, 0.5f);
+    ColorTarget color{kColumns * kCell, kRows* kCell, Format::R32G32B32A32_FLOAT};
+
+    Cells()
+    {
+        for (auto [x, y] : {std::pair{-1, 1}, {1, 1}, {-1, -1}, {-1, -1}, {1, 1}, {1, -1}})
+            vertices.insert(vertices.end(),
+                            {float(x), float(y), 0.5f, 1, float(x), float(y), 0, 0});
+        color.clear({-1, -1, -1, -1}, ThreadPool(1));
+    }
+    Draw draw(std::size_t i)
+    {
+        Draw d;
+        d.name = "cell";
+        d.pipeline.vertex_shader = bind_vertex_shader(test::SceneVertexShader{}, {});
+        Numbered const shader{float(i), Texture2D(std::as_bytes(std::span(table)),
+                                                  Format::R32_FLOAT, kColumns * kCell,
+                                                  kRows * kCell, kColumns * kCell, 1, "table")};
+        d.pipeline.pixel_shader = bind_pixel_shader(shader, {});
+        d.call.topology = PrimitiveTopology::TriangleList;
+        d.call.set_vertices(vertices, 8);
+        d.call.vertex_count = 6;
+        RasterTarget target;
+        target.color = {&color};
+        target.viewports = {{float(int(i) % kColumns * kCell), float(int(i) / kColumns * kCell),
+                             kCell, kCell, 0, 1}};
+        target.depth_stencil.depth_enable = false;
+        d.target = target;
+        return d;
+    }
+    std::vector<float> texels() const
+    {
+        std::vector<float> out;
+        for (int y = 0; y < color.height(); ++y)
+            for (int x = 0; x < color.width(); ++x)
+                for (float c : color.load(x, y)) out.push_back(c);
+        return out;
+    }
+};
+
+TEST(OwnTarget, IsFilledWhateverTheRunsTargetIsAndShowsNoPatches)
+{
+    for (bool picture : {false, true}) {
+        Cells cells;
+        CommandList list;
+        list.commands = {cells.draw(0), cells.draw(9)};
+        list.filter_surface_draws([](Draw const&) { return false; });
+        EXPECT_EQ(list.commands.size(), 2u);
+        EXPECT_EQ(list.patches(), 0u);
+        ColorTarget seen(9, 9, Format::R32_FLOAT);
+        seen.clear({7, 7, 7, 7}, ThreadPool(1));
+        RasterTarget raster;
+        raster.color = {&seen};
+        raster.viewports = {{0, 0, 9, 9, 0, 1}};
+        CommandOptions options;
+        if (picture) options.raster = &raster;
+        options.visit = [](SurfacePatch const&) { FAIL() << "no patch"; };
+        ListStatistics const s = run_commands(list, ThreadPool(2), options);
+        EXPECT_EQ(s.total.pipeline.PSInvocations, 2u * 81);
+        for (int y = 0; y < 18; ++y)
+            for (int x = 0; x < 18; ++x) {
+                bool const first = x < 9 && y < 9, second = x >= 9 && y >= 9;
+                std::array<float, 4> const is = cells.color.load(x, y);
+                EXPECT_EQ(is[2], first || second ? 0.5f : -1.0f) << x << ", " << y;
+            }
+        EXPECT_EQ(cells.color.load(13, 13)[0], 9.0f); // in the middle of its cell
+        EXPECT_EQ(seen.load(4, 4)[0], 7.0f);
+    }
+}
+
+TEST(DrawBatch, GivesTheTargetsAndCountsOfItsDrawsOneByOneOnAnyThreads)
+{
+    std::size_t const count = Cells::kColumns * Cells::kRows - 5;
+    Cells alone;
+    CommandList list;
+    for (std::size_t i = 0; i < count; ++i) list.commands.emplace_back(alone.draw(i));
+    ListStatistics const one_by_one = run_commands(list, ThreadPool(1));
+    ASSERT_EQ(one_by_one.commands.size(), 1u);
+    EXPECT_EQ(one_by_one.total.pipeline.PSInvocations, count * 81);
+    StageStatistics const& shading =
+        *std::find_if(one_by_one.total.stages.begin(), one_by_one.total.stages.end(),
+                      [](StageStatistics const& stage) { return stage.stage == "pixel_shader"; });
+    ASSERT_EQ(shading.fetches.size(), 1u);
+    EXPECT_EQ(shading.fetches[0].unique_bytes, count * 81 * sizeof(float)); // of each draw
+    for (int threads : {1, 2, 3, 8}) {
+        Cells cells;
+        CommandList batch;
+        batch.commands = {DrawBatch{"cell", count, [&](std::size_t i) { return cells.draw(i); }}};
+        ListStatistics const s = run_commands(batch, ThreadPool(threads));
+        EXPECT_EQ(cells.texels(), alone.texels()) << threads;
+        EXPECT_EQ(s.total, one_by_one.total) << threads;
+        ASSERT_EQ(s.commands.size(), 1u);
+        EXPECT_EQ(s.commands[0].kind, "draw");
+        EXPECT_EQ(s.commands[0].name, "cell");
+        EXPECT_EQ(s.commands[0].number, count);
+        EXPECT_EQ(s.commands[0].statistics, s.total);
+    }
+}
+
+TEST(DrawBatch, StaysWhereDrawsOfTheSurfaceGoAndIsNoCommandWhereItIsEmpty)
+{
+    SchemeOnMesh const m = load("jug", "gregory-two-stage");
+    Cells cells;
+    CommandList list = m.patches->commands({});
+    list.commands.insert(list.commands.begin(),
+                         DrawBatch{"cell", 3, [&](std::size_t i) { return cells.draw(i); }});
+    list.commands.emplace_back(DrawBatch{"none", 0, {}});
+    std::size_t const patches = list.patches();
+    EXPECT_GT(patches, 0u);
+    list = instanced(std::move(list), {});
+    EXPECT_EQ(list.patches(), patches);
+    list.filter_surface_draws([](Draw const&) { return false; });
+    EXPECT_EQ(list.patches(), 0u);
+    ListStatistics const s = run_commands(list, ThreadPool(2));
+    ASSERT_FALSE(s.commands.empty());
+    EXPECT_EQ(s.commands.front().name, "cell");
+    EXPECT_EQ(s.commands.front().number, 3u);
+    for (CommandStatistics const& c : s.commands) EXPECT_NE(c.name, "none");
+    EXPECT_EQ(cells.color.load(18 + 4, 4)[0], 2.0f);
+}
+
+TEST(DrawBatch, AnErrorOfOneDrawReachesTheCaller)
+{
+    Cells cells;
+    CommandList list;
+    list.commands = {DrawBatch{"cell", 40, [&](std::size_t i) {
+                                   if (i == 33) throw Error("cell 33 has no table");
+                                   return cells.draw(i);
+                               }}};
+    for (int threads : {1, 3}) EXPECT_THROW(run_commands(list, ThreadPool(threads)), Error);
 }
 
 TEST(CommandList, TheWireViewDrawsTwiceAndDispatchesOnce)

@@ -26,7 +26,7 @@ public:
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const>,
-                                     Parameters const&) const override
+                                     Parameters const&, BuildServices const&) const override
     {
         return nullptr;
     }
@@ -101,9 +101,9 @@ TEST(Schemes, NamesAreUniqueAndFound)
         for (SchemeParameter const& p : info.parameters) {
             EXPECT_TRUE(parameters.insert(p.name).second) << info.name << ": " << p.name;
             EXPECT_FALSE(p.meaning.empty()) << info.name << ": " << p.name;
-            if (!p.words.empty() || !p.default_value) continue;
-            EXPECT_GE(*p.default_value, p.min) << info.name << ": " << p.name;
-            EXPECT_LE(*p.default_value, p.max) << info.name << ": " << p.name;
+            if (!p.words.empty()) continue;
+            EXPECT_GE(p.default_value.value_or(p.min), p.min) << info.name << ": " << p.name;
+            EXPECT_LE(p.default_value.value_or(p.max), p.max) << info.name << ": " << p.name;
         }
     }
     try {

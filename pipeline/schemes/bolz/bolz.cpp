@@ -8,6 +8,7 @@
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/commands/displacement.h"
+#include "pipeline/mesh/biermann.h"
 #include "pipeline/schemes/bolz/adaptive.h"
 #include "pipeline/schemes/bolz/grid.h"
 #include "pipeline/schemes/bolz/table_patches.h"
@@ -16,8 +17,10 @@
 #include "shaders_cpp/bolz/table_vertex_shader.h"
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace tessemu {
@@ -253,14 +256,30 @@ std::vector<std::uint32_t> words_of(TablePatches const& t, std::size_t patch, Pa
     return out;
 }
 
+// Of a mesh that lies aside of 0: a multiple, near its middle, of a power of two above its size, so
+// that a difference to it loses no bit that matters.
+std::array<float, 3> origin_of(ControlMesh const& mesh)
+{
+    glm::vec3 low(INFINITY), high(-INFINITY);
+    for (glm::vec3 const& p : mesh.positions) low = min(low, p), high = max(high, p);
+    float const size = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    std::array<float, 3> out{};
+    if (!(size > 0)) return out;
+    float const step = std::ldexp(1.0f, std::ilogb(size) + 1);
+    for (int k = 0; k < 3; ++k)
+        out[std::size_t(k)] = std::floor((low[k] + high[k]) / 2 / step + 0.5f) * step + 0.0f;
+    return out;
+}
+
 class BolzPatches final : public PatchMesh {
 public:
     BolzPatches(std::shared_ptr<RefinedMesh const> refined, Parameters const& parameters,
                 BasisTableStore* store)
         : PatchMesh(std::move(refined)),
           order_(parameters.word("order") == "global" ? TableOrder::Global : TableOrder::Table),
+          origin_(origin_of(mesh().base())),
           hidden_(hidden_faces(mesh(), warnings_)),
-          basis_(mesh(), store),
+          basis_(mesh(), store, {.enforced = parameters.word("tables") == "enforced"}),
           tables_(mesh(), basis_, order_, hidden_)
     {
         if (auto const distance = parameters.number_if_given("adapt")) adapt(*distance);
@@ -273,7 +292,7 @@ public:
                         "adapt=D each its own");
         CommandList list;
         if (tables_.patches.empty()) return list;
-        VertexSource const positions = add_vertices(list, mesh(), s);
+        VertexSource const positions = add_vertices(list, mesh(), s, 0, origin_);
         auto const frame = std::make_shared<Passes>(tables_, s.machine, levels(s));
         auto const constants = std::make_shared<std::vector<float>>(4 * tables_.vertices.size());
         list.memory.push_back(frame);
@@ -334,8 +353,8 @@ private:
         for (TablePatches::Patch const& p : tables_.patches)
             drawn.push_back({p.face, p.neighbours});
         double const diagonal = bounding_box_diagonal(mesh().base());
-        AdaptiveLevels found =
-            adaptive_levels(drawn, basis_, mesh().mesh(), distance * diagonal);
+        AdaptiveLevels found = adaptive_levels(drawn, basis_, mesh().mesh(), distance * diagonal,
+                                               {origin_[0], origin_[1], origin_[2]});
         adaptive_ = std::move(found.patches);
         if (found.beyond == 0) return;
         warnings_.push_back(fmt::format(
@@ -395,6 +414,7 @@ private:
                     vs.patches = {shown->words, 5, "patches"};
                     vs.places = {grid->places, 6, "grid_places"};
                     vs.level = levels.inside;
+                    vs.origin = origin_;
                     vs.has_poles = tables_.has_poles;
                     vs.has_creases = tables_.has_creases;
                     vs.epilog = e;
@@ -409,6 +429,7 @@ private:
     }
 
     TableOrder order_;
+    std::array<float, 3> origin_;
     std::vector<std::string> warnings_;
     std::vector<char> hidden_;
     MeshBasis basis_;
@@ -431,18 +452,42 @@ public:
             return SchemeParameter{name, meaning, 0, 0, 0, std::move(allowed)};
         };
         info.parameters = {
+            words("rules", "of subdivision beside tags", {"opensubdiv", "biermann"}),
+            {"flatness",
+             "with rules=biermann, how far a step draws rings of tagged vertices into their "
+             "tangent planes; where it is not given, as far as concave corners need",
+             {},
+             0,
+             1},
             words("order", "of a patch's sums: one for the mesh, bit-exact, or that of its tables",
                   {"global", "table"}),
+            words("tables", "weights of shared points: made equal (2.1.1), or as they were made",
+                  {"enforced", "unenforced"}),
             {"adapt",
              "each patch has its own segments, 1 to 32, so that its triangles lie within so many "
              "diagonals of the model's box of the surface",
              {},
              1e-9,
              1}};
-        info.watertight_with = {{"order", "global"}};
+        info.watertight_with = {{"order", "global"}, {"tables", "enforced"}};
         info.tessellator = false;
         info.no_curvature = "its tables have no second derivatives";
         return info;
+    }
+    void set_rules(ControlMesh& mesh, Parameters const& parameters,
+                   WarningSink const& warn) const override
+    {
+        std::optional<double> const flatness = parameters.number_if_given("flatness");
+        if (parameters.word("rules") != "biermann") {
+            if (flatness)
+                throw Error("bolz: flatness is a part of rules=biermann, and rules is " +
+                            parameters.word("rules"));
+            return;
+        }
+        mesh.rules.flatness = flatness;
+        check_sharpness_for_biermann(mesh);
+        mesh.rules.sectors = SectorRules::Biermann;
+        for (std::string const& w : in_words(mark_concave_sectors(mesh), mesh)) warn(w);
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
                                      Parameters const& parameters) const override

@@ -42,7 +42,7 @@ public:
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
-                                     Parameters const& parameters) const override
+                                     Parameters const& parameters, BuildServices const&) const override
     {
         return std::make_unique<PhongPatches>(std::move(mesh), parameters);
     }

@@ -69,7 +69,7 @@ public:
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
-                                     Parameters const&) const override
+                                     Parameters const&, BuildServices const&) const override
     {
         return std::make_unique<PmPatches>(std::move(mesh));
     }

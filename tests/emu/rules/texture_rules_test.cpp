@@ -7,6 +7,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <bit>
+#include <cstring>
+
 namespace tessemu::test {
 namespace {
 
@@ -38,6 +41,11 @@ TEST(Buffers, R141R142R143I26OutOfRangeAndUnboundReadsGiveZero)
     float const expected[8] = {0, 0, 1, 2, 3, 0, 0, 0};
     for (int i = 0; i < 8; ++i) EXPECT_EQ(r.raw[i], expected[i]);
     EXPECT_EQ(load<float>(Buffer<float>(), 0), 0.0f);
+    ConstantBuffer<float> const constants(values);
+    EXPECT_EQ(load<T>(constants, 2).raw[7], 3.0f);
+    EXPECT_EQ(load<T>(constants, 3).raw[7], 0.0f);
+    EXPECT_EQ(load<float>(constants, -1), 0.0f);
+    EXPECT_EQ(load<float>(ConstantBuffer<float>(), 0), 0.0f);
     // Bits pass untouched.
     std::vector<std::uint32_t> const words{0x7f800001u};
     EXPECT_EQ(load<float>(Buffer<std::uint32_t>(words, 0, "w"), 0), std::int32_t(0x7f800001u));
@@ -61,6 +69,49 @@ TEST(Texture, R142LoadOutOfRangeInAnyIndexGivesZero)
         EXPECT_EQ(load<T>(texture, IntLanes<8>(x), IntLanes<8>(y), l, s).w.raw[0] + red(x, y, l, s),
                   0.0f);
     EXPECT_EQ((load<T>(Texture2D(), IntLanes<8>(0), IntLanes<8>(0)).x.raw[0]), 0.0f);
+}
+
+// Components as decode() has them, which the tables of formats are held to; per lane as one by one.
+TEST(Texture, R36R142MissingComponentsHaveTheirDefaultInAndOutOfRange)
+{
+    int const width = 5, height = 3, pitch = 7;
+    std::uint32_t state = 1;
+    for (std::size_t f = 0; f < kFormats; ++f) {
+        auto const format = Format(f);
+        FormatInfo const& of = info(format);
+        std::vector<std::byte> bytes(std::size_t(pitch * height) * of.bytes);
+        for (std::byte& b : bytes) b = std::byte((state = state * 1664525u + 1013904223u) >> 24);
+        Texture2D const texture(bytes, format, width, height, pitch, 0, "t");
+        EXPECT_EQ(texture.info().element_bytes, of.bytes);
+        IntLanes<8> x(0), y(0);
+        for (int turn = 0; turn < 4; ++turn) {
+            for (int l = 0; l < 8; ++l)
+                x.raw[l] = (turn * 8 + l) % 9 - 2, y.raw[l] = (turn * 8 + l) / 9 - 0;
+            auto const lanes = load<T>(texture, x, y);
+            for (int l = 0; l < 8; ++l) {
+                int const i = x.raw[l], j = y.raw[l];
+                bool const in = i >= 0 && i < width && j >= 0 && j < height;
+                std::array<float, 4> texel{0, 0, 0, 0};
+                if (in)
+                    texel = decode(format, bytes.data() + std::size_t(j * pitch + i) * of.bytes);
+                else if (of.components < 4)
+                    texel[3] = of.type == FormatType::Uint || of.type == FormatType::Sint
+                                   ? std::bit_cast<float>(1u)
+                                   : 1.0f;
+                float4<float> const one = load<float>(texture, i, j);
+                float const got[2][4] = {
+                    {lanes.x.raw[l], lanes.y.raw[l], lanes.z.raw[l], lanes.w.raw[l]},
+                    {one.x, one.y, one.z, one.w}};
+                for (auto const& g : got)
+                    ASSERT_EQ(std::memcmp(g, texel.data(), sizeof g), 0)
+                        << of.name << " at " << i << ", " << j;
+            }
+        }
+        EXPECT_EQ(load<float>(texture, 0, 0, 1).x, 0.0f); // it has one level
+    }
+    // Nothing bound: 0 everywhere, the fourth too.
+    EXPECT_EQ((load<T>(Texture2D(), IntLanes<8>(0), IntLanes<8>(0)).w.raw[0]), 0.0f);
+    EXPECT_EQ(load<float>(Texture2D(), 0, 0).w, 0.0f);
 }
 
 RC_GTEST_PROP(Texture, R145R146PointAndLinearFollowTheirFormulas, ())
