@@ -274,12 +274,13 @@ std::array<float, 3> origin_of(ControlMesh const& mesh)
 class BolzPatches final : public PatchMesh {
 public:
     BolzPatches(std::shared_ptr<RefinedMesh const> refined, Parameters const& parameters,
-                BasisTableStore* store)
+                BuildServices const& services)
         : PatchMesh(std::move(refined)),
           order_(parameters.word("order") == "global" ? TableOrder::Global : TableOrder::Table),
           origin_(origin_of(mesh().base())),
           hidden_(hidden_faces(mesh(), warnings_)),
-          basis_(mesh(), store, {.enforced = parameters.word("tables") == "enforced"}),
+          basis_(mesh(), services.tables, {.enforced = parameters.word("tables") == "enforced"},
+                 services.progress),
           tables_(mesh(), basis_, order_, hidden_)
     {
         if (auto const distance = parameters.number_if_given("adapt")) adapt(*distance);
@@ -490,9 +491,10 @@ public:
         for (std::string const& w : in_words(mark_concave_sectors(mesh), mesh)) warn(w);
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
-                                     Parameters const& parameters) const override
+                                     Parameters const& parameters,
+                                     BuildServices const& services) const override
     {
-        return std::make_unique<BolzPatches>(std::move(mesh), parameters, nullptr);
+        return std::make_unique<BolzPatches>(std::move(mesh), parameters, services);
     }
 };
 
