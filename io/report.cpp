@@ -113,6 +113,7 @@ Json start(ReportHeader const& header)
         j["inputs"].push_back({{"name", as_utf8(name)}, {"sha256", sha256}});
     j["warnings"] = Json::array();
     for (std::string const& w : header.warnings) j["warnings"].push_back(as_utf8(w));
+    if (!header.levels.empty()) j["levels"] = header.levels;
     return j;
 }
 

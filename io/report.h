@@ -34,6 +34,8 @@ struct ReportHeader {
     Config config;
     std::vector<std::pair<std::string, std::string>> inputs; ///< (name, SHA-256)
     std::vector<std::string> warnings;
+    /// Where patches have levels of their own: how many have 2^i segments inside.
+    std::vector<std::uint64_t> levels = {};
     Config run; ///< times, threads, lanes: not hashed
 };
 
