@@ -297,6 +297,7 @@ std::string tables_report(ReportHeader const& header, std::vector<TableSetRow> c
             families.push_back({{"family", in_words(f.family)},
                                 {"types", f.types},
                                 {"tables", f.tables},
+                                {"tables_but_2_faces", f.tables_but_2},
                                 {"bytes", f.bytes()}});
         SymmetryReport const& r = row.set.symmetry;
         auto const classes = [](SymmetryReport::Classes const& c) {

@@ -129,18 +129,18 @@ std::string tables_table(std::vector<TableSetRow> const& sets)
     std::string out;
     for (TableSetRow const& row : sets) {
         auto const line = [&](auto const&... column) {
-            out += fmt::format("{:<20} {:>8} {:>8} {:>8} {:>14}\n", column...);
+            out += fmt::format("{:<20} {:>8} {:>8} {:>8} {:>14} {:>14}\n", column...);
         };
         out += "rules=" + row.rules + "\n";
-        line("family", "types", "made", "tables", "bytes");
-        std::size_t types = 0, made = 0, tables = 0;
+        line("family", "types", "made", "tables", "bytes", "but 2 faces");
+        std::size_t types = 0, made = 0, tables = 0, others = 0;
         for (TableSet::Family const& f : row.set.families) {
             line(in_words(f.family), counted(f.types), counted(f.made), counted(f.tables),
-                 counted(f.bytes()));
-            types += f.types, made += f.made, tables += f.tables;
+                 counted(f.bytes()), counted(f.tables_but_2));
+            types += f.types, made += f.made, tables += f.tables, others += f.tables_but_2;
         }
         line("all", counted(types), counted(made), counted(tables),
-             counted(TableSet::Family::bytes_of(tables)));
+             counted(TableSet::Family::bytes_of(tables)), counted(others));
         SymmetryReport const& r = row.set.symmetry;
         out += fmt::format("\n{:<28} {:>12} {:>10} {:>12} {:>8}\n", "classes of equal edges",
                            "table edges", "directed", "undirected", "BOLZ03");

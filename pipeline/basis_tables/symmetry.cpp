@@ -247,11 +247,17 @@ private:
     std::vector<char> is_opposite_, is_zero_;
 };
 
-// Between two numbers of one sign.
+// What double's roundings leave of a weight that is 0.
+constexpr float kRoundingOf0 = 0x1p-40f;
+
 std::uint32_t ulps_between(float a, float b)
 {
-    std::uint32_t const x = std::bit_cast<std::uint32_t>(a), y = std::bit_cast<std::uint32_t>(b);
-    return x < y ? y - x : x - y;
+    auto const ordered = [](float v) {
+        auto const bits = std::bit_cast<std::uint32_t>(v);
+        return bits >> 31 ? -std::int64_t(bits & 0x7fffffffu) : std::int64_t(bits);
+    };
+    std::int64_t const apart = ordered(a) - ordered(b);
+    return std::uint32_t(apart < 0 ? -apart : apart);
 }
 
 // Entries on the sides of all types, by table: 0 position, 1 du, 2 dv.
@@ -578,7 +584,7 @@ SymmetryReport enforce_symmetry(std::span<PatchTypeTables> types, std::span<Join
             if (value != x) {
                 ++out.changed;
                 any = true;
-                if (value == 0 || (value > 0) != (x > 0)) {
+                if (std::max(std::abs(value), std::abs(x)) < kRoundingOf0 || value == 0) {
                     ++out.zeroed;
                 } else {
                     std::uint32_t const ulps = ulps_between(value, x);

@@ -3,6 +3,8 @@
 
 #include "emu/parallel.h"
 
+#include <algorithm>
+
 namespace tessemu {
 
 std::vector<TableFamily> table_families(int first, int last, SubdivisionRules const& rules)
@@ -19,8 +21,8 @@ std::vector<TableFamily> table_families(int first, int last, SubdivisionRules co
         }
         family.types.push_back(std::move(type));
     };
-    for (int k = first; k <= last; ++k) {
-        if (k >= 2) {
+    for (int k = first == 2 ? 1 : first; k <= last; ++k) {
+        if (k >= std::max(first, 2)) {
             add(smooth, smooth_type(k));
             for (int edge = 0; edge < k; ++edge) add(dart, dart_type(k, edge));
         }
@@ -67,6 +69,8 @@ TableSet make_table_set(std::span<TableFamily const> families, BasisTableStore& 
                 PatchType const& type = f.types[first + i];
                 all.push_back(in_single_precision(type, *tables[i]));
                 row.tables += std::size_t(tables[i]->points);
+                if (!type.corner.closed || type.corner.faces > 2)
+                    row.tables_but_2 += std::size_t(tables[i]->points);
             }
             done += n;
             if (progress) progress(done, count);

@@ -21,7 +21,8 @@ struct TableFamily {
 /// creases and boundaries, convex corners, and by Biermann's rules concave corners (of 2 faces and
 /// more: a face alone is taken as convex); nothing beyond a patch has an influence on it.
 ///
-/// \param first, last  faces, 1 to PatchType::kMostFaces
+/// \param first, last  faces, 1 to PatchType::kMostFaces; from 2 on, the least of a closed ring,
+///                     there are sectors of one face too
 /// \param rules        sectors and flatness of them
 std::vector<TableFamily> table_families(int first, int last, SubdivisionRules const& rules);
 
@@ -31,6 +32,7 @@ struct TableSet {
         PatchFamily family;
         std::size_t types = 0, made = 0; ///< made: not in the store
         std::size_t tables = 0;          ///< control points of all types
+        std::size_t tables_but_2 = 0;    ///< without those of vertices of two faces
         /// In single precision: position and two tangents.
         std::uint64_t bytes() const { return bytes_of(tables); }
         static std::uint64_t bytes_of(std::size_t tables_)
