@@ -77,8 +77,7 @@ SkinBuffers skin_of(Pose const& pose);
 /// of them.
 ///
 /// \param texels  at least so many vertices' room
-/// \param origin  taken off all positions before the first step; exact for multiples of a power of
-///                two near a mesh that is smaller than it
+/// \param origin  taken off all positions before the first step
 /// \returns  the control mesh's own memory, without a command, where there is neither; else vertices
 ///           of four floats each, texels
 VertexSource add_vertices(CommandList& list, RefinedMesh const& mesh,

@@ -256,8 +256,8 @@ std::vector<std::uint32_t> words_of(TablePatches const& t, std::size_t patch, Pa
     return out;
 }
 
-// Of a mesh that lies aside of 0: a multiple, near its middle, of a power of two above its size, so
-// that a difference to it loses no bit that matters.
+// Near the middle of a mesh, a multiple of an eighth of its size and a power of two: sums round in
+// units of what they add, and of a point near 0 a difference to it loses less than they do.
 std::array<float, 3> origin_of(ControlMesh const& mesh)
 {
     glm::vec3 low(INFINITY), high(-INFINITY);
@@ -265,7 +265,7 @@ std::array<float, 3> origin_of(ControlMesh const& mesh)
     float const size = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
     std::array<float, 3> out{};
     if (!(size > 0)) return out;
-    float const step = std::ldexp(1.0f, std::ilogb(size) + 1);
+    float const step = std::ldexp(1.0f, std::ilogb(size) - 3);
     for (int k = 0; k < 3; ++k)
         out[std::size_t(k)] = std::floor((low[k] + high[k]) / 2 / step + 0.5f) * step + 0.0f;
     return out;
