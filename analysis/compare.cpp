@@ -2,6 +2,7 @@
 #include "analysis/compare.h"
 
 #include "analysis/embree_scene.h"
+#include "pipeline/mesh/placement.h"
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -314,13 +315,6 @@ ErrorStatistics EqualParameterErrors::statistics(std::vector<double> const& valu
     for (std::size_t i = 0; i < weights.size(); ++i)
         if (weights[i] > 0) a.add(values[i], weights[i]);
     return a.result();
-}
-
-double bounding_box_diagonal(ControlMesh const& mesh)
-{
-    Vec low(1e300), high(-1e300);
-    for (glm::vec3 const& p : mesh.positions) low = min(low, Vec(p)), high = max(high, Vec(p));
-    return glm::length(high - low);
 }
 
 double quantile(std::vector<double> const& values, std::vector<double> const& weights, double share)

@@ -50,9 +50,6 @@ private:
 EqualParameterErrors equal_parameter_errors(PatchMesh const& patches, FrameSettings settings,
                                             int level, ThreadPool const& threads);
 
-/// Of a mesh at rest.
-double bounding_box_diagonal(ControlMesh const& mesh);
-
 /// What `share` of the weight, 0 to 1, stays at or below.
 double quantile(std::vector<double> const& values, std::vector<double> const& weights,
                 double share);

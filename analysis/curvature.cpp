@@ -2,6 +2,7 @@
 #include "analysis/curvature.h"
 
 #include "analysis/compare.h"
+#include "pipeline/mesh/placement.h"
 
 #include <glm/geometric.hpp>
 

@@ -238,12 +238,13 @@ int run(DrawRequest const& o)
     ThreadPool const threads(o.run.threads);
     ProgressBar bar;
     Stopwatch const clock;
-    std::string legend;
-    if (o.shows(View::Valence)) legend = valence_legend(job.patches()) + "\n";
+    std::string legend = in_words_of_levels(job.header.levels);
+    if (!legend.empty()) legend += "\n";
+    if (o.shows(View::Valence)) legend += valence_legend(job.patches()) + "\n";
     if (o.shows(View::Curvature)) {
         double const range = set_curvature_range(o, job, threads);
         c.emplace_back("curvature_max", range);
-        legend = curvature_legend(range, job.patches()) + "\n";
+        legend += curvature_legend(range, job.patches()) + "\n";
     }
     Frame frame(f);
     std::vector<SequenceFrame> sequence;

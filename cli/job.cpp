@@ -217,6 +217,17 @@ AdaptiveFactors factors_in_mesh(AdaptiveFactors factors, Placement const& placem
 
 } // namespace
 
+std::string in_words_of_levels(std::vector<std::uint64_t> const& levels)
+{
+    std::vector<std::string> parts;
+    for (std::size_t level = 0; level < levels.size(); ++level)
+        if (levels[level])
+            parts.push_back(fmt::format("{} of {} segment{}", levels[level], 1 << level,
+                                        level == 0 ? "" : "s"));
+    if (parts.empty()) return "";
+    return fmt::format("patches by their segments: {}\n", fmt::join(parts, ", "));
+}
+
 void keep_inputs(RunOutput const& out, SurfaceRequest const& o)
 {
     out.keep(o.model.model);
@@ -237,7 +248,13 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     Job job = open_job(o.model, o.shading, verb, make);
     FrameSettings& f = job.frame;
     f.partitioning = o.partitioning.value_or(f.partitioning);
-    f.tess_factor = float(o.tess);
+    f.tess_factor = float(o.tess.value_or(kDefaultTessFactor));
+    if (job.surface.patches) job.header.levels = job.surface.patches->level_counts();
+    bool const adaptive = !job.header.levels.empty();
+    if (adaptive && o.tess) {
+        job.header.warnings.push_back("--tess is not used: each patch has its own segments");
+        print_warning(job.header.warnings.back());
+    }
     if (o.vertex_cache) f.vertex_cache = *o.vertex_cache;
     f.direct3d10 = o.direct3d10;
     f.displacement = make_displacement(o, job);
@@ -249,7 +266,7 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     if (heights.kind == DisplaceRequest::Heights::Kind::Image)
         h.inputs.emplace_back(name_of(heights), sha256_of(read_file(heights.image)));
     Config& c = h.config = config_of(o.model, job.surface.parameters);
-    c.emplace_back("tess", o.tess);
+    if (!adaptive) c.emplace_back("tess", double(f.tess_factor));
     if (o.model.scheme->info().tessellator)
         c.emplace_back("partitioning", std::string(name_of(f.partitioning)));
     add_config(c, o.shading);

@@ -77,6 +77,9 @@ Job open_job(ModelRequest const& o, ShadingRequest const& shading, std::string c
              MakeSurface& make);
 /// The model and its settings for shading.
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb);
+/// "patches by their segments: 12 of 1 segment, 3 of 2 segments" and a line's end; empty where
+/// patches have no levels of their own.
+std::string in_words_of_levels(std::vector<std::uint64_t> const& levels);
 /// No result may replace the model or the height map.
 void keep_inputs(RunOutput const& out, SurfaceRequest const& o);
 /// With everything that verbs that tessellate share.

@@ -28,7 +28,9 @@ std::string line_of(SchemeParameter const& p)
     std::string const value = !p.words.empty()  ? p.words[0]
                               : p.default_value ? fmt::format("{}", *p.default_value)
                                                 : "NUMBER";
-    return fmt::format("    --set {}={}  {}: {}\n", p.name, value, allowed(p), p.meaning);
+    return fmt::format("    --set {}={}  {}{}: {}\n", p.name, value, allowed(p),
+                       p.words.empty() && !p.default_value ? ", by default not set" : "",
+                       p.meaning);
 }
 
 int list_schemes()

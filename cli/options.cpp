@@ -292,8 +292,10 @@ void add_machine(Verb& verb, ShadingRequest& o)
 void add_options(Verb& verb, SurfaceRequest& o, NormalWords words)
 {
     add_options(verb, o.model);
-    verb.option("--tess", o.tess, parse_tess, "tess factor of every edge and inside, above 0 to 64",
-                "8");
+    verb.option("--tess", o.tess, parse_tess,
+                fmt::format("tess factor of every edge and inside, above 0 to 64; not used where "
+                            "patches have levels of their own (bolz with --set adapt=D) [{}]",
+                            kDefaultTessFactor));
     verb.option("--partitioning", o.partitioning, parse_partitioning,
                 std::string(kPartitioningHelp) + " [fractional_odd]");
     add_options(verb, o.shading, words);

@@ -54,11 +54,13 @@ struct AnimateRequest {
     int frames = 1;
 };
 
+inline constexpr double kDefaultTessFactor = 8;
+
 /// What verbs that tessellate a surface share.
 struct SurfaceRequest {
     ModelRequest model;
     ShadingRequest shading;
-    double tess = 0;
+    std::optional<double> tess; ///< by default kDefaultTessFactor
     std::optional<Partitioning> partitioning; ///< by default fractional_odd
     DisplaceRequest displace;
     AnimateRequest animate;

@@ -13,6 +13,7 @@ void add_draw(CommandLine& program);
 void add_export(CommandLine& program);
 void add_tessellate(CommandLine& program);
 void add_subdivide(CommandLine& program);
+void add_tables(CommandLine& program);
 void add_compare(CommandLine& program);
 void add_check(CommandLine& program);
 void add_cost(CommandLine& program);

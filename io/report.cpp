@@ -113,6 +113,7 @@ Json start(ReportHeader const& header)
         j["inputs"].push_back({{"name", as_utf8(name)}, {"sha256", sha256}});
     j["warnings"] = Json::array();
     for (std::string const& w : header.warnings) j["warnings"].push_back(as_utf8(w));
+    if (!header.levels.empty()) j["levels"] = header.levels;
     return j;
 }
 
@@ -284,6 +285,41 @@ std::string subdivide_report(ReportHeader const& header, ListStatistics const& s
                               {"kernels", kernels}});
     }
     return finish(std::move(j), header, [&](Sha256& hash) { add_to_hash(mesh, placement, hash); });
+}
+
+std::string tables_report(ReportHeader const& header, std::vector<TableSetRow> const& sets)
+{
+    Json j = start(header);
+    j["sets"] = Json::array();
+    for (TableSetRow const& row : sets) {
+        Json families = Json::array();
+        for (TableSet::Family const& f : row.set.families)
+            families.push_back({{"family", in_words(f.family)},
+                                {"types", f.types},
+                                {"tables", f.tables},
+                                {"bytes", f.bytes()}});
+        SymmetryReport const& r = row.set.symmetry;
+        auto const classes = [](SymmetryReport::Classes const& c) {
+            return Json{{"table_edges", c.table_edges},
+                        {"directed", c.directed},
+                        {"undirected", c.undirected}};
+        };
+        j["sets"].push_back({{"rules", row.rules},
+                             {"families", families},
+                             {"symmetry",
+                              {{"joints", r.joints},
+                               {"off_corner", classes(r.off_corner)},
+                               {"off_corner_at_a_tag", classes(r.off_corner_at_a_tag)},
+                               {"on_corner", classes(r.on_corner)},
+                               {"two_ring", classes(r.two_ring)},
+                               {"entries", r.entries},
+                               {"changed", r.changed},
+                               {"zeroed", r.zeroed},
+                               {"changed_ulps", r.changed_ulps},
+                               {"most_ulps", r.most_ulps},
+                               {"passes", r.passes}}}});
+    }
+    return finish(std::move(j), header, [](Sha256&) {});
 }
 
 std::string info_report(ReportHeader const& header, MeshSummary const& s,

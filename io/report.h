@@ -8,6 +8,7 @@
 #include "io/mesh_writer.h"
 #include "io/plot.h"
 #include "io/tessellator_text.h"
+#include "pipeline/basis_tables/table_set.h"
 #include "pipeline/schemes/scheme.h"
 
 #include <string>
@@ -33,6 +34,8 @@ struct ReportHeader {
     Config config;
     std::vector<std::pair<std::string, std::string>> inputs; ///< (name, SHA-256)
     std::vector<std::string> warnings;
+    /// Where patches have levels of their own: how many have 2^i segments inside.
+    std::vector<std::uint64_t> levels = {};
     Config run; ///< times, threads, lanes: not hashed
 };
 
@@ -83,6 +86,15 @@ std::string subdivide_report(ReportHeader const& header, ListStatistics const& s
                              std::vector<SubdivisionRow> const& steps, ControlMesh const& mesh,
                              Placement const& placement);
 std::string subdivide_table(std::vector<SubdivisionRow> const& steps);
+
+/// A set of basis-function tables by one choice of rules.
+struct TableSetRow {
+    std::string rules;
+    TableSet set;
+};
+/// tables
+std::string tables_report(ReportHeader const& header, std::vector<TableSetRow> const& sets);
+std::string tables_table(std::vector<TableSetRow> const& sets);
 
 /// info: the mesh's figures and its patches under a scheme.
 std::string info_report(ReportHeader const& header, MeshSummary const& summary,

@@ -124,6 +124,43 @@ std::string subdivide_table(std::vector<SubdivisionRow> const& steps)
     return out + "\n";
 }
 
+std::string tables_table(std::vector<TableSetRow> const& sets)
+{
+    std::string out;
+    for (TableSetRow const& row : sets) {
+        auto const line = [&](auto const&... column) {
+            out += fmt::format("{:<20} {:>8} {:>8} {:>8} {:>14}\n", column...);
+        };
+        out += "rules=" + row.rules + "\n";
+        line("family", "types", "made", "tables", "bytes");
+        std::size_t types = 0, made = 0, tables = 0;
+        for (TableSet::Family const& f : row.set.families) {
+            line(in_words(f.family), counted(f.types), counted(f.made), counted(f.tables),
+                 counted(f.bytes()));
+            types += f.types, made += f.made, tables += f.tables;
+        }
+        line("all", counted(types), counted(made), counted(tables),
+             counted(TableSet::Family::bytes_of(tables)));
+        SymmetryReport const& r = row.set.symmetry;
+        out += fmt::format("\n{:<28} {:>12} {:>10} {:>12} {:>8}\n", "classes of equal edges",
+                           "table edges", "directed", "undirected", "BOLZ03");
+        auto const classes = [&](char const* name, SymmetryReport::Classes const& c,
+                                 char const* paper) {
+            out += fmt::format("{:<28} {:>12} {:>10} {:>12} {:>8}\n", name, counted(c.table_edges),
+                               counted(c.directed), counted(c.undirected), paper);
+        };
+        classes("off-corner", r.off_corner, "4");
+        classes("off-corner, at a tag", r.off_corner_at_a_tag, "4");
+        classes("on-corner, second ring", r.two_ring, "2");
+        classes("on-corner, others", r.on_corner, "-");
+        out += fmt::format("entries: {} compared, {} changed, of these {} roundings of 0; the "
+                           "others by {} bits in all,\nat most {}; passes: {}\n\n",
+                           counted(r.entries), counted(r.changed), counted(r.zeroed),
+                           counted(r.changed_ulps), counted(r.most_ulps), r.passes);
+    }
+    return out;
+}
+
 std::string compare_table(std::vector<ErrorRow> const& rows)
 {
     std::string out = fmt::format("{:<10} {:<31} {:<9} {:>11} {:>11} {:>11} {:>9}\n", "error",

@@ -33,7 +33,7 @@ class PieceBuilder {
 public:
     // Vertices are the control points in their order, those of beyond_points(), then others that
     // carry tags alone.
-    explicit PieceBuilder(PatchType const& type)
+    PieceBuilder(PatchType const& type, int cells)
         : type_(type),
           ring_(type.corner),
           n_(type.corner.faces),
@@ -59,12 +59,11 @@ public:
             if (v < with_weights) unit[v] = 1;
             out_.points.push_back(std::move(unit));
         }
-        constexpr int kCells = kTableSide - 1;
         out_.places.resize(vertices_);
         out_.places[0] = {0, 0};
-        out_.places[e(j_)] = {kCells, 0};
-        out_.places[f(j_)] = {kCells, kCells};
-        out_.places[e(j_ + 1)] = {0, kCells};
+        out_.places[e(j_)] = {cells, 0};
+        out_.places[f(j_)] = {cells, cells};
+        out_.places[e(j_ + 1)] = {0, cells};
         out_.is_cut.assign(vertices_, 1);
         for (std::uint32_t v : {0u, e(j_), f(j_), e(j_ + 1)}) out_.is_cut[v] = 0;
         if (type.beyond[PatchType::RightVertex]) out_.is_cut[x20()] = 0;
@@ -461,16 +460,18 @@ void set_directions(Around const& a, Limits<CatmullClark>& limits, Sample& out)
 
 } // namespace
 
-BasisTables make_basis_tables(PatchType const& type)
+BasisTables make_basis_tables(PatchType const& type, int steps)
 {
-    Piece piece = PieceBuilder(type).take();
-    for (int s = 0; s < kTableSteps; ++s) piece = refined(piece);
+    int const cells = 1 << steps, side = cells + 1;
+    auto const samples = std::size_t(side) * std::size_t(side);
+    Piece piece = PieceBuilder(type, cells).take();
+    for (int s = 0; s < steps; ++s) piece = refined(piece);
     Topology const topology(piece.mesh);
     Rings const rings(piece, topology);
     Limits<CatmullClark> limits;
     BasisTables out;
     std::size_t const all = piece.points[0].size();
-    auto const size = all * kTableSamples;
+    auto const size = all * samples;
     out.position.resize(size), out.du.resize(size), out.dv.resize(size);
     for (std::uint32_t v = 0; v < piece.points.size(); ++v) {
         Place const place = piece.places[v];
@@ -478,7 +479,7 @@ BasisTables make_basis_tables(PatchType const& type)
         Around a = rings.around(v);
         Sample s;
         s.position = limits.of(a.ring, a.sharp).position;
-        double h = 1.0 / ((kTableSide - 1) << rings.further_steps());
+        double h = 1.0 / ((side - 1) << rings.further_steps());
         while (a.sharp.is_semi_sharp()) {
             a.ring = refined_ring<CatmullClark>(a.ring, a.sharp);
             a.sharp = a.sharp.after_step();
@@ -488,29 +489,30 @@ BasisTables make_basis_tables(PatchType const& type)
             set_directions(a, limits, s);
         else
             set_derivatives(a, h, s);
-        std::size_t const at = std::size_t(place.j) * kTableSide + std::size_t(place.i);
+        std::size_t const at = std::size_t(place.j) * std::size_t(side) + std::size_t(place.i);
         for (std::size_t k = 0; k < all; ++k) {
-            out.position[k * kTableSamples + at] = s.position[k];
-            out.du[k * kTableSamples + at] = s.du[k];
-            out.dv[k * kTableSamples + at] = s.dv[k];
+            out.position[k * samples + at] = s.position[k];
+            out.du[k * samples + at] = s.du[k];
+            out.dv[k * samples + at] = s.dv[k];
         }
     }
     // Of the rings beyond only points that count.
     out.points = type.points();
     for (auto k = std::size_t(out.points); k < all; ++k) {
-        auto const first = std::ptrdiff_t(k * kTableSamples);
+        auto const first = std::ptrdiff_t(k * samples);
         auto const counts = [&](std::vector<double> const& table) {
-            return std::any_of(table.begin() + first, table.begin() + first + kTableSamples,
+            return std::any_of(table.begin() + first,
+                               table.begin() + first + std::ptrdiff_t(samples),
                                [](double w) { return w != 0; });
         };
         if (!counts(out.position) && !counts(out.du) && !counts(out.dv)) continue;
-        auto const to = std::ptrdiff_t(out.points++) * kTableSamples;
+        auto const to = std::ptrdiff_t(out.points++) * std::ptrdiff_t(samples);
         for (auto* table : {&out.position, &out.du, &out.dv})
-            std::copy_n(table->begin() + first, kTableSamples, table->begin() + to);
+            std::copy_n(table->begin() + first, samples, table->begin() + to);
         out.beyond.push_back(std::uint16_t(k - std::size_t(type.points())));
     }
     for (auto* table : {&out.position, &out.du, &out.dv})
-        table->resize(std::size_t(out.points) * kTableSamples);
+        table->resize(std::size_t(out.points) * samples);
     return out;
 }
 

@@ -32,7 +32,8 @@ struct BasisTables {
     bool operator==(BasisTables const&) const = default;
 };
 
-/// \cost  time of order kTableSamples times the control points: some milliseconds
-BasisTables make_basis_tables(PatchType const& type);
+/// \param steps  down to the grid, of 2^steps + 1 samples on a side in place of kTableSide
+/// \cost  time of order of the samples times the control points: some milliseconds
+BasisTables make_basis_tables(PatchType const& type, int steps = kTableSteps);
 
 } // namespace tessemu

@@ -1,8 +1,8 @@
 // The type of a patch of a subdivision surface: all that its basis functions depend on (BOLZ03
 // section 2; docs/math/subdivision.md, 1.7 and 5.1).
 //
-//      (-1,2)--(0,2)---(1,2)---(2,2)     A patch p is a quad of a mesh on which a step has been
-//         |      |       |       |       taken, so that all its vertices but one are regular: V, its
+//      (-1,2)--(0,2)---(1,2)---(2,2)     A patch p is a quad of a mesh that a step has made, so
+//         |      |       |       |       that all its vertices but one are regular: V, its
 //        f_1----e_1-----f_0----(2,1)     corner (0,0). Its control points are V's ring, or the
 //         |      |   p   |       |       sector of it between two infinitely sharp edges, e_0 f_0
 //        e_2-----V------e_0----(2,0)     e_1 ... counter-clockwise, and up to seven more. Here it

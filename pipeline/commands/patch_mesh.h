@@ -46,6 +46,9 @@ public:
     /// What the scheme could not honour, in the user's words.
     virtual std::vector<std::string> warnings() const { return {}; }
     virtual std::optional<AnotherWay> another_way() const { return {}; }
+    /// Where patches have levels of their own, whatever the tess factor: how many have 2^i segments
+    /// inside; else empty.
+    virtual std::vector<std::uint64_t> level_counts() const { return {}; }
     /// Whether the surface has a normal on each side of an infinitely sharp edge.
     virtual bool has_creases() const { return false; }
 

@@ -2,6 +2,7 @@
 #include "pipeline/mesh/placement.h"
 
 #include "emu/error.h"
+#include "pipeline/mesh/mesh.h"
 
 #include <fmt/format.h>
 
@@ -12,6 +13,13 @@
 #include <cmath>
 
 namespace tessemu {
+
+double bounding_box_diagonal(ControlMesh const& mesh)
+{
+    glm::dvec3 low(1e300), high(-1e300);
+    for (glm::dvec3 const p : mesh.positions) low = min(low, p), high = max(high, p);
+    return length(high - low);
+}
 
 Placement::Placement(std::span<glm::dvec3 const> points)
 {

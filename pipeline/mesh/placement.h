@@ -10,6 +10,11 @@
 
 namespace tessemu {
 
+struct ControlMesh;
+
+/// Of a mesh at rest.
+double bounding_box_diagonal(ControlMesh const& mesh);
+
 /// A shift and a power of two between the file's frame and the mesh's own, both exact: points of
 /// the mesh keep all of their bits. What reads a file makes it; what writes positions and lengths,
 /// or reads them from a user, asks it.

@@ -125,7 +125,8 @@ SchemeParameter const& sort_parameter();
 
 /// NAME, VALUE as a user wrote them.
 using ParameterTexts = std::vector<std::pair<std::string, std::string>>;
-/// The scheme's parameters, those not given at their defaults; sort_parameter() where it is given.
+/// The scheme's parameters, those not given at their defaults, where they have one; sort_parameter()
+/// where it is given.
 /// Throws Error that names the parameter, the value and what is allowed.
 Parameters resolve_parameters(SchemeInfo const& info, ParameterTexts const& given);
 

@@ -124,5 +124,102 @@ TEST(BasisSurface, IsTheLimitSurfaceOfBiermannsRules)
     EXPECT_GT(worst.with_other_points, 0u);
 }
 
+// Tables of arbitrary origin: each weight off by up to an ulp of a float.
+class NoisyStore : public BasisTableStore {
+public:
+    std::optional<BasisTables> find(PatchType const& type) override
+    {
+        BasisTables out = make_basis_tables(type);
+        for (auto* table : {&out.position, &out.du, &out.dv})
+            for (double& w : *table) w *= 1 + 0x1p-23 * (double(random_() % 3) - 1);
+        return out;
+    }
+    void keep(PatchType const&, BasisTables const&) override {}
+
+private:
+    std::mt19937 random_{1};
+};
+
+struct Shared {
+    std::size_t positions = 0, tangents = 0, positions_differ = 0, tangents_differ = 0;
+};
+
+// Sums in single precision, of products and sums apart; `by_vertex`: in the order of the vertices,
+// else of the tables.
+Shared shared_sides(RefinedMesh const& refined, MeshBasis const& basis, bool by_vertex)
+{
+    Topology const& t = refined.topology();
+    Sharpness const sharpness(t);
+    auto const& x = refined.mesh().positions;
+    auto const at = [&](std::uint32_t face, int i, int j) {
+        BasisPatch const& patch = basis.patches()[face];
+        PatchTypeTables const& type = basis.types()[patch.type];
+        std::vector<std::pair<std::uint32_t, std::size_t>> order;
+        for (std::size_t k = 0; k < std::size_t(type.points); ++k)
+            order.emplace_back(basis.points()[patch.first_point + k], k);
+        if (by_vertex) std::sort(order.begin(), order.end());
+        std::array<glm::vec3, 3> sum{glm::vec3(0), glm::vec3(0), glm::vec3(0)};
+        for (auto const& [vertex, k] : order) {
+            std::size_t const s = k * kTableSamples + std::size_t(j * kTableSide + i);
+            sum[0] += type.position[s] * x[vertex];
+            sum[1] += type.du[s] * x[vertex];
+            sum[2] += type.dv[s] * x[vertex];
+        }
+        return sum;
+    };
+    Shared out;
+    for (HalfEdge h = 0; h < refined.mesh().face_vertices.size(); ++h) {
+        HalfEdge const other = t.twin(h);
+        if (other == Topology::kNone || h % 4 > 1) continue;
+        bool const lower = h % 4 == 0;
+        for (int s = 0; s < kTableSide; ++s) {
+            auto const a = lower ? at(t.face_of(h), s, 0) : at(t.face_of(h), 32, s);
+            auto const b = lower ? at(t.face_of(other), 0, s) : at(t.face_of(other), s, 32);
+            ++out.positions;
+            out.positions_differ += a[0] != b[0];
+            if (lower && (s == 0 || sharpness.edge(h) >= kInfinitelySharp)) continue;
+            // Turned by a right angle: du is the other's dv, dv its -du; across Right the same.
+            ++out.tangents;
+            out.tangents_differ += a[1] != (lower ? b[2] : -b[2]) || a[2] != (lower ? -b[1] : b[1]);
+        }
+    }
+    return out;
+}
+
+// The share of points that differ without enforcement or order is most of
+// them.
+TEST(BasisSurface, HasEqualBitsWherePatchesMeetWithEnforcedTablesInOneOrder)
+{
+    std::optional<double> const flatness[] = {{}, 0.0, 0.5};
+    Shared all, unenforced, unordered;
+    auto const add = [](Shared& sum, Shared const& s) {
+        sum.positions += s.positions, sum.tangents += s.tangents;
+        sum.positions_differ += s.positions_differ, sum.tangents_differ += s.tangents_differ;
+    };
+    for (std::uint32_t seed : {5u, 7u, 20u})
+        for (int rules = 0; rules < 4; ++rules) {
+            ControlMesh mesh = test::with_random_tags(test::random_mesh(seed), seed);
+            if (rules > 0) mesh = by_biermann(std::move(mesh), flatness[rules - 1]);
+            RefinedMesh const refined(std::move(mesh), 2, catmull_clark_step);
+            NoisyStore store;
+            MeshBasis const basis(refined, &store);
+            Shared const s = shared_sides(refined, basis, true);
+            EXPECT_EQ(s.positions_differ, 0u) << seed << " " << rules;
+            EXPECT_EQ(s.tangents_differ, 0u) << seed << " " << rules;
+            add(all, s);
+            if (rules > 1) continue;
+            NoisyStore again;
+            add(unenforced,
+                shared_sides(refined, MeshBasis(refined, &again, {.enforced = false}), true));
+            add(unordered, shared_sides(refined, basis, false));
+        }
+    EXPECT_GT(all.positions, 100000u);
+    EXPECT_GT(all.tangents, 100000u);
+    for (Shared const& s : {unenforced, unordered}) {
+        EXPECT_GT(s.positions_differ, s.positions / 2);
+        EXPECT_GT(s.tangents_differ, s.tangents / 2);
+    }
+}
+
 } // namespace
 } // namespace tessemu

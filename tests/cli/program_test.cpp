@@ -35,8 +35,9 @@ TEST(Program, HelpAndVersionExitZeroOnEachVerb)
 {
     EXPECT_EQ(run("--help").status, 0);
     EXPECT_EQ(run("--version").status, 0);
-    for (char const* verb : {"draw", "export", "tessellate", "compare", "check", "cost",
-                             "reproduce", "diff", "info", "schemes", "models", "subdivide"}) {
+    for (char const* verb :
+         {"draw", "export", "tessellate", "compare", "check", "cost", "reproduce", "diff", "info",
+          "schemes", "models", "subdivide", "tables"}) {
         Result const help = run(std::string(verb) + " --help");
         EXPECT_EQ(help.status, 0) << verb;
         EXPECT_NE(help.out.find("Examples:"), std::string::npos) << verb;
@@ -49,7 +50,7 @@ TEST(Program, HelpAndVersionExitZeroOnEachVerb)
 TEST(Program, AVerbWithoutItsArgumentPrintsHelpAndExitsTwo)
 {
     for (char const* verb : {"", "draw", "export", "tessellate", "compare", "check", "cost",
-                             "reproduce", "diff", "info", "subdivide"}) {
+                             "reproduce", "diff", "info", "subdivide", "tables"}) {
         Result const r = run(verb);
         EXPECT_EQ(r.status, 2) << verb;
         EXPECT_TRUE(r.out.empty()) << verb;
@@ -280,6 +281,42 @@ TEST(Program, ParametersOfASchemeAreResolvedInTheResult)
     EXPECT_EQ(draw_json("--set lambda=1.5 jug --size 16x16")["hash"], b["hash"]);
     EXPECT_EQ(draw_json("--size 16x16 --set r=2 --set lambda=1.5 jug")["config"]["r"], 2.0);
     EXPECT_NE(a["hash"], b["hash"]);
+}
+
+TEST(Program, LevelsOfAdaptivePatchesAreToldAndTheTessFactorIsNotUsed)
+{
+    fs::path const json = scratch() / "adaptive.json";
+    std::string const command = "draw golem --scheme bolz --set adapt=0.01 --size 16x16 ";
+    Result const r = run(command + "--json " + json.string());
+    ASSERT_EQ(r.status, 0) << r.err;
+    EXPECT_TRUE(r.err.empty()) << r.err;
+    Json const j = Json::parse(test::read_text(json));
+    EXPECT_EQ(j["config"]["adapt"], 0.01);
+    EXPECT_FALSE(j["config"].contains("tess"));
+    std::string line = "patches by their segments: ";
+    bool first = true;
+    ASSERT_EQ(j["levels"].size(), 6u);
+    for (std::size_t level = 0; level < 6; ++level) {
+        auto const patches = j["levels"][level].get<std::uint64_t>();
+        if (patches == 0) continue;
+        line += (first ? "" : ", ") + std::to_string(patches) + " of " +
+                std::to_string(1 << level) + (level == 0 ? " segment" : " segments");
+        first = false;
+    }
+    EXPECT_EQ(r.out.find(line + "\n"), 0u) << r.out;
+
+    Result const with_tess = run(command + "--tess 4");
+    EXPECT_EQ(with_tess.status, 0);
+    EXPECT_EQ(with_tess.err, "warning: --tess is not used: each patch has its own segments\n");
+    Json const uniform = draw_json("golem --scheme bolz --size 16x16");
+    EXPECT_EQ(uniform["config"]["tess"], 8.0);
+    EXPECT_FALSE(uniform["config"].contains("adapt"));
+    EXPECT_FALSE(uniform.contains("levels"));
+    EXPECT_NE(run("schemes").out.find("--set adapt=NUMBER  1e-09 to 1, by default not set: "),
+              std::string::npos);
+    EXPECT_NE(run(command + "--set adapt=0").err.find("more than once"), std::string::npos);
+    EXPECT_NE(run("draw golem --scheme bolz --set adapt=0").err.find("from 1e-09 to 1"),
+              std::string::npos);
 }
 
 TEST(Program, CommandsAddUpToTheStages)

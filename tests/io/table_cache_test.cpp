@@ -24,7 +24,11 @@ struct TableCache : testing::Test {
     fs::path folder = fs::temp_directory_path() / ("tessemu_cache_" + std::to_string(getpid()));
     PatchType type = sector_type(2, 1);
 
-    TableCache() { fs::remove_all(folder); }
+    TableCache()
+    {
+        fs::remove_all(folder);
+        tables(); // before any fork
+    }
     ~TableCache() override { fs::remove_all(folder); }
     static BasisTables const& tables()
     {

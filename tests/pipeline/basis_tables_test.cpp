@@ -47,10 +47,10 @@ PatchType golden_type(nlohmann::json const& g)
     return type;
 }
 
-// What an edge that leans to the corner changes at its other end P, when the golden data's two steps
-// have left it next to the corner V: their masks are those of plain edges. In the next step its edge
-// point moves by (cos(theta)/4) (V - P), which has 1/9 in the position's mask and 4/(12 h) in the
-// tangent's, h = 1/8, along the edge. By control point of V's ring.
+// What an edge that leans to the corner V changes at its other end P, next to V after the golden
+// data's two steps, whose masks are those of plain edges. In the next step its edge point moves by
+// (cos(theta)/4) (V - P), which has 1/9 in the position's mask and 4/(12 h), h = 1/8, in that of
+// the tangent along the edge. By control point of V's ring.
 std::vector<double> lean_after_two_steps(PatchType const& type, std::size_t edge)
 {
     VertexRing const& c = type.corner;

@@ -20,7 +20,7 @@ namespace {
 // work(patches) for every scheme on every built-in cage that it takes.
 template <class Work> void for_each_case(Work&& work)
 {
-    for (auto const& scheme : schemes())
+    for (Scheme const* scheme : test::tessellated_schemes())
         for (std::string const& cage : test::cages_of(*scheme)) {
             SCOPED_TRACE(scheme->info().name + " on " + cage);
             work(build_scheme(*scheme, load_model(cage).mesh));

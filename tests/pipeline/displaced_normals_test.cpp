@@ -36,7 +36,7 @@ FrameSettings displaced_by(std::shared_ptr<Displacement const> map)
 // Without a slope nothing turns. (Far enough out a surface folds; so the map is not that high.)
 TEST(DisplacedNormals, OfALevelMapAreTheSmoothSurfacesBitForBit)
 {
-    for (auto const& scheme : schemes())
+    for (Scheme const* scheme : test::tessellated_schemes())
         for (std::string const& model : test::models_of(*scheme))
             for (float height : {0.0f, 0.75f}) {
                 SchemeOnMesh const m = on_charts(model, *scheme);
@@ -65,7 +65,7 @@ TEST(DisplacedNormals, OfALevelMapAreTheSmoothSurfacesBitForBit)
 TEST(DisplacedNormals, PatchesAgreeBitForBitUnderEveryContraction)
 {
     HeightImage const image = test::noise(64);
-    for (auto const& scheme : schemes())
+    for (Scheme const* scheme : test::tessellated_schemes())
         for (std::string const& model : test::models_of(*scheme)) {
             SchemeOnMesh const m = on_charts(model, *scheme);
             std::shared_ptr<Displacement const> const maps[] = {

@@ -21,7 +21,8 @@ public:
         SchemeInfo info{"sample", "-", "-", "a number and a word"};
         info.parameters = {{"gain", "a factor", 0.5, -1, 2.25},
                            {"rule", "how", 0, 0, 0, {"mean", "longest", "none"}},
-                           {"free", "any number", 7}};
+                           {"free", "any number", 7},
+                           {"reach", "how far, if at all", {}, 0, 8}};
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const>,
@@ -50,6 +51,18 @@ TEST(SchemeParameters, DefaultsAreTheNumberAndTheFirstWord)
     EXPECT_EQ(p.values().size(), 3u);
 }
 
+TEST(SchemeParameters, OneWithoutADefaultHasNoValueUnlessItIsGiven)
+{
+    Parameters const without = resolve_parameters(Sample().info(), {});
+    EXPECT_FALSE(without.number_if_given("reach"));
+    EXPECT_EQ(without.values().count("reach"), 0u);
+    Parameters const with = resolve_parameters(Sample().info(), {{"reach", "2.5"}});
+    EXPECT_EQ(with.number_if_given("reach"), 2.5);
+    EXPECT_EQ(with.number_if_given("gain"), 0.5);
+    EXPECT_EQ(refusal({{"reach", "-1"}}),
+              "sample: reach is '-1', it must be a number from 0 to 8");
+}
+
 TEST(SchemeParameters, GivenOnesReplaceTheirDefaultsAlone)
 {
     Parameters const p = resolve_parameters(Sample().info(), {{"gain", "-1"}, {"rule", "none"}});
@@ -63,7 +76,7 @@ TEST(SchemeParameters, GivenOnesReplaceTheirDefaultsAlone)
 TEST(SchemeParameters, RefusalsNameTheParameterTheValueAndWhatIsAllowed)
 {
     EXPECT_EQ(refusal({{"glow", "1"}}),
-              "sample has no parameter 'glow'; there is gain, rule, free, sort");
+              "sample has no parameter 'glow'; there is gain, rule, free, reach, sort");
     for (char const* text : {"", "one", "1x", "0x1", "1 ", " 1", "1,5"})
         EXPECT_EQ(refusal({{"gain", text}}),
                   "sample: gain is '" + std::string(text) + "', it must be a number");

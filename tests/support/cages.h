@@ -15,6 +15,16 @@
 
 namespace tessemu::test {
 
+/// Those whose points hull shader, tessellator and domain shader make.
+inline std::vector<Scheme const*> tessellated_schemes()
+{
+    std::vector<Scheme const*> out;
+    for (auto const& scheme : schemes())
+        if (scheme->info().tessellator) out.push_back(scheme.get());
+    EXPECT_FALSE(out.empty());
+    return out;
+}
+
 inline bool takes(Scheme const& scheme, ControlMesh const& mesh)
 {
     try {

@@ -58,8 +58,8 @@ public:
                             "have kinks at the edges of irregular patches";
         return info;
     }
-    std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
-                                     Parameters const&, BuildServices const&) const override
+    std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh, Parameters const&,
+                                     BuildServices const&) const override
     {
         return std::make_unique<AccPatches>(std::move(mesh));
     }

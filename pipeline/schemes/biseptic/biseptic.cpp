@@ -130,7 +130,8 @@ public:
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
-                                     Parameters const& parameters, BuildServices const&) const override
+                                     Parameters const& parameters,
+                                     BuildServices const&) const override
     {
         return std::make_unique<BisepticPatches>(std::move(mesh), parameters);
     }

@@ -9,12 +9,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/commands/displacement.h"
 #include "pipeline/mesh/biermann.h"
+#include "pipeline/schemes/bolz/adaptive.h"
 #include "pipeline/schemes/bolz/grid.h"
 #include "pipeline/schemes/bolz/table_patches.h"
 #include "pipeline/schemes/scheme.h"
 #include "shaders_cpp/bolz/table_pixel_shaders.h"
 #include "shaders_cpp/bolz/table_vertex_shader.h"
 
+#include <fmt/format.h>
 #include <glm/common.hpp>
 
 #include <algorithm>
@@ -272,14 +274,16 @@ std::array<float, 3> origin_of(ControlMesh const& mesh)
 class BolzPatches final : public PatchMesh {
 public:
     BolzPatches(std::shared_ptr<RefinedMesh const> refined, Parameters const& parameters,
-                BasisTableStore* store)
+                BuildServices const& services)
         : PatchMesh(std::move(refined)),
           order_(parameters.word("order") == "global" ? TableOrder::Global : TableOrder::Table),
           origin_(origin_of(mesh().base())),
           hidden_(hidden_faces(mesh(), warnings_)),
-          basis_(mesh(), store, {.enforced = parameters.word("tables") == "enforced"}),
+          basis_(mesh(), services.tables, {.enforced = parameters.word("tables") == "enforced"},
+                 services.progress),
           tables_(mesh(), basis_, order_, hidden_)
     {
+        if (auto const distance = parameters.number_if_given("adapt")) adapt(*distance);
     }
 
     CommandList commands(SurfaceSettings const& s) const override
@@ -334,10 +338,38 @@ public:
     }
     std::vector<std::string> warnings() const override { return warnings_; }
     bool has_creases() const override { return tables_.has_creases; }
+    std::vector<std::uint64_t> level_counts() const override
+    {
+        std::vector<std::uint64_t> out;
+        if (!adaptive_.empty()) out.assign(kMostLevels + 1, 0);
+        for (GridLevels const& l : adaptive_) ++out[l.inside];
+        return out;
+    }
 
 private:
+    // From the mesh at rest, so that levels do not change while it moves.
+    void adapt(double distance)
+    {
+        std::vector<DrawnPatch> drawn;
+        for (TablePatches::Patch const& p : tables_.patches)
+            drawn.push_back({p.face, p.neighbours});
+        double const diagonal = bounding_box_diagonal(mesh().base());
+        AdaptiveLevels found = adaptive_levels(drawn, basis_, mesh().mesh(), distance * diagonal,
+                                               {origin_[0], origin_[1], origin_[2]});
+        adaptive_ = std::move(found.patches);
+        if (found.beyond == 0) return;
+        warnings_.push_back(fmt::format(
+            "adapt={}: {} of {} patches may lie further from the surface than that with 32 "
+            "segments, up to {:.2g} diagonals: {}",
+            distance, found.beyond, drawn.size(), found.largest / diagonal,
+            found.rounding > distance * diagonal
+                ? fmt::format("{:.2g} of it is what single precision may add",
+                              found.rounding / diagonal)
+                : "a step of subdivision before (--subdivide) halves patches"));
+    }
     std::vector<GridLevels> levels(SurfaceSettings const& s) const
     {
+        if (!adaptive_.empty()) return adaptive_;
         int level = 0;
         while (level <= kMostLevels && float(1 << level) < s.tess_factor) ++level;
         if (level > kMostLevels)
@@ -403,6 +435,7 @@ private:
     std::vector<char> hidden_;
     MeshBasis basis_;
     TablePatches tables_;
+    std::vector<GridLevels> adaptive_; // by patch; empty: by the tess factor
 };
 
 class Bolz final : public Scheme {
@@ -430,7 +463,13 @@ public:
             words("order", "of a patch's sums: one for the mesh, bit-exact, or that of its tables",
                   {"global", "table"}),
             words("tables", "weights of shared points: made equal (2.1.1), or as they were made",
-                  {"enforced", "unenforced"})};
+                  {"enforced", "unenforced"}),
+            {"adapt",
+             "each patch has its own segments, 1 to 32, so that its triangles lie within so many "
+             "diagonals of the model's box of the surface",
+             {},
+             1e-9,
+             1}};
         info.watertight_with = {{"order", "global"}, {"tables", "enforced"}};
         info.tessellator = false;
         info.no_curvature = "its tables have no second derivatives";
@@ -452,9 +491,10 @@ public:
         for (std::string const& w : in_words(mark_concave_sectors(mesh), mesh)) warn(w);
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
-                                     Parameters const& parameters) const override
+                                     Parameters const& parameters,
+                                     BuildServices const& services) const override
     {
-        return std::make_unique<BolzPatches>(std::move(mesh), parameters, nullptr);
+        return std::make_unique<BolzPatches>(std::move(mesh), parameters, services);
     }
 };
 

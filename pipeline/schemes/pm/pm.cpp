@@ -68,8 +68,8 @@ public:
             "alone, so curvature jumps at their edges and inside them";
         return info;
     }
-    std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
-                                     Parameters const&, BuildServices const&) const override
+    std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh, Parameters const&,
+                                     BuildServices const&) const override
     {
         return std::make_unique<PmPatches>(std::move(mesh));
     }

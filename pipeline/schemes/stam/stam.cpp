@@ -204,7 +204,8 @@ public:
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
-                                     Parameters const& parameters, BuildServices const&) const override
+                                     Parameters const& parameters,
+                                     BuildServices const&) const override
     {
         return std::make_unique<StamPatches>(std::move(mesh), parameters);
     }
