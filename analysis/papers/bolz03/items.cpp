@@ -2,6 +2,7 @@
 #include "analysis/papers/bolz03/items.h"
 
 #include "analysis/papers/bolz03/listing.h"
+#include "analysis/papers/bolz03/section3.h"
 
 namespace tessemu {
 
@@ -15,6 +16,16 @@ std::vector<PaperItem> bolz03_items()
                      {},
                      0,
                      [](PaperInput const&, auto&, auto&) { return reproduce_bolz03_listing(); }});
+    items.push_back({"bolz03-section3",
+                     "vertices a second, batches, the price of bit-exact sums",
+                     PaperKind::Table,
+                     {},
+                     {"geforce-fx"},
+                     0,
+                     [](PaperInput const& in, auto& threads, auto& progress) {
+                         return reproduce_bolz03_section3(in.gpus[0], in.machine, threads,
+                                                          progress);
+                     }});
     return items;
 }
 
