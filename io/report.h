@@ -34,9 +34,9 @@ struct ReportHeader {
     Config config;
     std::vector<std::pair<std::string, std::string>> inputs; ///< (name, SHA-256)
     std::vector<std::string> warnings;
+    Config run; ///< times, threads, lanes: not hashed
     /// Where patches have levels of their own: how many have 2^i segments inside.
     std::vector<std::uint64_t> levels = {};
-    Config run; ///< times, threads, lanes: not hashed
 };
 
 /// draw: counters and stages of all commands together, then of like commands in a row; "hash"

@@ -69,9 +69,9 @@ TEST(WidePatches, SharedPointsHaveEqualBitsUnderEveryContraction)
                 }
             ++drawn;
         }
-    // Both Gregory forms, Stam and biseptic, ACC where all faces are quads, and where nothing is wide Pm and,
+    // Both Gregory forms, Stam, biseptic and tables, ACC where all faces are quads, and where nothing is wide Pm and,
     // of triangles alone, Phong.
-    EXPECT_EQ(drawn, 4 * 7 + 5 + 1 + 1);
+    EXPECT_EQ(drawn, 5 * 7 + 5 + 1 + 1);
 }
 
 TEST(WidePatches, AWarningCountsThem)
@@ -170,7 +170,7 @@ TEST(WidePatches, ALimitThatStaysIsNamed)
         EXPECT_EQ(e.face, 0u);
         EXPECT_STREQ(e.what(), "pm draws vertices of at most 15 edges: vertex 1 of face 1 has 16; "
                                "schemes that draw this mesh: gregory-stencil, gregory-two-stage, "
-                               "acc, stam, biseptic");
+                               "acc, stam, biseptic, bolz");
     }
     try {
         build_scheme(find_scheme("gregory-stencil"), test::uv_sphere(2049, 3).mesh);

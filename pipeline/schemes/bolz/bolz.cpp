@@ -448,6 +448,7 @@ public:
         info.takes.steps = 1;
         info.takes.steps_with_triangles = info.takes.steps_with_polygons = 2;
         info.takes.creases = info.takes.corners = true;
+        info.takes.edges = PatchType::kMostFaces;
         auto const words = [](char const* name, char const* meaning,
                               std::vector<std::string> allowed) {
             return SchemeParameter{name, meaning, 0, 0, 0, std::move(allowed)};

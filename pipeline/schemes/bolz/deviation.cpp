@@ -31,7 +31,7 @@ Angle angle_of(VertexRing const& ring)
     if (ring.closed) return {2, n};
     if (ring.vertex == 0) return {1, n};
     // Of a corner: one face has a right angle, many less than pi.
-    return ring.concave ? Angle{3, 2 * n} : Angle{1, n + 1};
+    return !ring.concave.empty() ? Angle{3, 2 * n} : Angle{1, n + 1};
 }
 
 double cross(Point a, Point b)
