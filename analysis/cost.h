@@ -13,12 +13,19 @@
 // A hull shader's groups do not span patches, so lanes idle. How many, each draw of a frame says for
 // itself, for draws differ in control points; all else of a frame is costed as one draw.
 //
+// GPUs whose shaders are assembly issue instructions of several components: products with the sums
+// that they feed, so many scalars at once, and one for each texel. Their fragments run in batches
+// which draws cannot share, so places idle: of each draw for itself. Where the GPU says so, a draw
+// into a target of its own switches to it, and the target travels to the CPU and, as vertices,
+// back; these work beside the shaders, as does the bus for what the CPU makes.
+//
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "io/gpu_model.h"
 #include "pipeline/commands/command_list.h"
 
+#include <map>
 #include <span>
 
 namespace tessemu {
@@ -43,9 +50,15 @@ struct DrawCost {
 };
 
 /// \param statistics  of a draw, or of several with the same patches added up
+/// Throws Error for a stage that the GPU lacks.
 DrawCost estimate_cost(GpuModel const& gpu, DrawStatistics const& statistics);
 /// Of a frame's commands, with the overhead once.
 DrawCost estimate_cost(GpuModel const& gpu, std::span<CommandStatistics const> commands);
+
+/// The share of places in batches of fragments that have one.
+///
+/// \param draws  how many, by their fragments
+double utilisation(GpuModel const& gpu, std::map<std::uint64_t, std::uint64_t> const& draws);
 
 /// Fetches of up to 16 bytes.
 double fetch_count(FetchStatistics const& f);

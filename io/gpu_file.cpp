@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 namespace tessemu {
@@ -29,11 +31,13 @@ public:
 
     GpuModel read()
     {
-        static char const* const kKnown[] = {"name",        "about",        "clocks",
-                                             "arithmetic",  "special",      "fetch",
-                                             "bandwidth",   "cache_bytes",  "tessellated_triangles",
-                                             "tessellator", "setup",        "raster",
-                                             "group_width", "vertex_cache", "overhead"};
+        static char const* const kKnown[] = {
+            "name",           "about",      "clocks",       "arithmetic",
+            "special",        "fetch",      "bandwidth",    "cache_bytes",
+            "tessellator",    "setup",      "raster",       "tessellated_triangles",
+            "group_width",    "overhead",   "vertex_cache", "issues",
+            "fragment_batch", "components", "bus",          "target_switches",
+            "stages",         "cpu_stages"};
         for (auto const& [key, value] : j_.items())
             if (std::find(std::begin(kKnown), std::end(kKnown), key) == std::end(kKnown))
                 fail("'" + key + "'", "is no number of a GPU");
@@ -61,6 +65,25 @@ public:
         }
         if (j_.contains("overhead")) m_.overhead = number(j_["overhead"], "overhead", true);
         if (j_.contains("vertex_cache")) read_vertex_cache();
+        if (j_.contains("issues")) read_issues();
+        if (j_.contains("components")) {
+            m_.components = number(j_["components"], "components");
+            if (m_.components > 4)
+                fail("components", fmt::format("is {}, it must be up to 4", m_.components));
+        }
+        if (j_.contains("fragment_batch")) {
+            double const n = number(j_["fragment_batch"], "fragment_batch");
+            if (n != std::floor(n))
+                fail("fragment_batch", fmt::format("is {}, it must be a whole number", n));
+            m_.fragment_batch = n;
+        }
+        rate("target_switches", m_.target_switches);
+        rate("bus", m_.bus);
+        read_stages("stages", m_.stages);
+        read_stages("cpu_stages", m_.cpu_stages);
+        for (std::string const& stage : m_.cpu_stages)
+            if (m_.stages.empty() || m_.has(stage))
+                fail("'cpu_stages'", "names " + stage + ", which the GPU has");
         return m_;
     }
 
@@ -122,6 +145,35 @@ private:
                   ResourceKind::Shared})
                 if (key == name_of(k)) m_.fetch[k] = x, found = true;
             if (!found) fail("'fetch." + key + "'", "is no kind of fetch");
+        }
+    }
+    void check_stage(std::string const& name, std::string const& at) const
+    {
+        static constexpr char const* kStages[] = {
+            "input_assembler", "vertex_shader",   "hull_shader",   "tessellator",
+            "domain_shader",   "geometry_shader", "stream_output", "rasterizer",
+            "pixel_shader",    "output_merger",   "compute_shader"};
+        if (std::find(std::begin(kStages), std::end(kStages), name) == std::end(kStages))
+            fail("'" + at + "'", "names " + name + ", which is no stage");
+    }
+    void read_issues()
+    {
+        if (!j_["issues"].is_object()) fail("'issues'", "is not an object");
+        for (auto const& [stage, value] : j_["issues"].items()) {
+            check_stage(stage, "issues");
+            if (!stage.ends_with("_shader"))
+                fail("'issues." + stage + "'", "is of no shader: nothing issues there");
+            m_.issues[stage] = rate_of(value, "issues." + stage);
+        }
+    }
+    void read_stages(char const* key, std::vector<std::string>& out)
+    {
+        if (!j_.contains(key)) return;
+        note_source(j_[key], key);
+        if (!j_[key]["value"].is_array()) fail(fmt::format("'{}'", key), "is not a list of stages");
+        for (Json const& stage : j_[key]["value"]) {
+            if (!stage.is_string()) fail(fmt::format("'{}'", key), "is not a list of stages");
+            check_stage(out.emplace_back(stage.get<std::string>()), key);
         }
     }
     void read_vertex_cache()

@@ -8,6 +8,13 @@
 //      "cache_bytes": {"value": 229376, "source": "..."}, "group_width": ..., "vertex_cache": ...,
 //      "overhead": {"value": 0.6e-3, "per": "draw", "source": "..."}}
 //
+// Of a GPU whose shaders are assembly of four-wide instructions:
+//
+//     {"issues": {"pixel_shader": {"value": 2, "per": "core", "source": "..."}},
+//      "components": {"value": 3, "source": "..."}, "fragment_batch": ...,
+//      "target_switches": {"value": 200, "per": "second", "source": "..."}, "bus": ...,
+//      "stages": {"value": ["vertex_shader", ...], "source": "..."}, "cpu_stages": ...}
+//
 // What is left out bounds nothing.
 //
 // SPDX-License-Identifier: Apache-2.0

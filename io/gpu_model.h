@@ -6,9 +6,11 @@
 #include "emu/memory.h"
 #include "emu/vertex_cache.h"
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace tessemu {
 
@@ -27,9 +29,24 @@ struct GpuModel {
     int group_width = 1; ///< invocations that run together
     VertexCacheModel vertex_cache;
     double overhead = 0; ///< seconds a draw costs whatever it does
+
+    // Of GPUs whose shaders are assembly of four-wide instructions.
+    std::map<std::string, double> issues; ///< instructions, by stage ("pixel_shader")
+    /// Scalar operations that an instruction does, where a stage has issues.
+    double components = 1;
+    double fragment_batch = 1; ///< fragments that run together, all of one draw
+    double target_switches = kUnknown;
+    double bus = kUnknown; ///< bytes between CPU and GPU
+
+    /// A stage that the GPU lacks is the CPU's, or an error; empty: the GPU has all.
+    std::vector<std::string> stages, cpu_stages;
     /// Where each number comes from, by its place in the file.
     std::map<std::string, std::string> sources;
 
+    bool has(std::string const& stage) const
+    {
+        return stages.empty() || std::find(stages.begin(), stages.end(), stage) != stages.end();
+    }
     double fetch_rate(ResourceKind kind) const
     {
         auto const it = fetch.find(kind);

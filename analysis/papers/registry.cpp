@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "analysis/papers/bolz03/items.h"
 #include "analysis/papers/loop09/items.h"
 #include "analysis/papers/loop10/items.h"
 #include "analysis/papers/paper.h"
@@ -9,7 +10,7 @@ std::vector<PaperItem> const& paper_items()
 {
     static std::vector<PaperItem> const all = [] {
         std::vector<PaperItem> items;
-        for (auto const& paper : {loop09_items(), loop10_items()})
+        for (auto const& paper : {bolz03_items(), loop09_items(), loop10_items()})
             items.insert(items.end(), paper.begin(), paper.end());
         return items;
     }();

@@ -101,12 +101,19 @@ private:
     std::vector<std::unique_ptr<DrawMemory>> idle_;
 };
 
+CommandStatistics counted(Draw const& d, DrawStatistics statistics)
+{
+    std::uint64_t const fragments = statistics.pipeline.PSInvocations;
+    return {"draw", d.name, 1, std::move(statistics), d.target.has_value(), {{fragments, 1}}};
+}
+
 // Threads take runs of the draws. Counts are added run by run, so nothing tells how many threads
 // there were.
-DrawStatistics run_batch(DrawBatch const& batch, ThreadPool const& threads, CommandOptions const& o)
+CommandStatistics run_batch(DrawBatch const& batch, ThreadPool const& threads,
+                            CommandOptions const& o)
 {
     constexpr std::size_t kRun = 16;
-    std::vector<DrawStatistics> runs((batch.count + kRun - 1) / kRun);
+    std::vector<CommandStatistics> runs((batch.count + kRun - 1) / kRun);
     Memories memories;
     threads.parallel_for(runs.size(), [&](std::size_t i) {
         ThreadPool const caller{ThreadPool::Caller()};
@@ -117,16 +124,25 @@ DrawStatistics run_batch(DrawBatch const& batch, ThreadPool const& threads, Comm
         for (std::size_t k = i * kRun; k < std::min(batch.count, (i + 1) * kRun); ++k) {
             Draw const d = batch.draw(k);
             assert(!d.shows_surface());
-            runs[i] += run_draw(d, caller, options, {});
+            runs[i] += counted(d, run_draw(d, caller, options, {}));
         }
         memories.give(std::move(memory));
     });
-    DrawStatistics all;
-    for (DrawStatistics const& run : runs) all += run;
+    CommandStatistics all{"draw", batch.name, 0, {}};
+    for (CommandStatistics const& run : runs) all += run;
     return all;
 }
 
 } // namespace
+
+CommandStatistics& CommandStatistics::operator+=(CommandStatistics const& o)
+{
+    number += o.number;
+    statistics += o.statistics;
+    own_targets += o.own_targets;
+    for (auto const& [fragments, count] : o.draws) draws[fragments] += count;
+    return *this;
+}
 
 OutputLayout Draw::output() const
 {
@@ -191,29 +207,27 @@ ListStatistics run_commands(CommandList const& list, ThreadPool const& threads,
     ListStatistics out;
     std::size_t const all = list.patches();
     std::size_t done = 0;
-    auto const count = [&](char const* kind, std::string const& name, DrawStatistics const& s,
-                           std::size_t number = 1) {
-        out.total += s;
-        bool const like = !out.commands.empty() && out.commands.back().kind == kind &&
-                          out.commands.back().name == name;
-        if (!like) out.commands.push_back({kind, name, 0, {}});
-        out.commands.back().number += number;
-        out.commands.back().statistics += s;
+    auto const count = [&](CommandStatistics const& c) {
+        out.total += c.statistics;
+        bool const like = !out.commands.empty() && out.commands.back().kind == c.kind &&
+                          out.commands.back().name == c.name;
+        if (!like) out.commands.push_back({c.kind, c.name, 0, {}});
+        out.commands.back() += c;
     };
     for (Command const& c : list.commands) {
         if (Dispatch const* const d = std::get_if<Dispatch>(&c)) {
-            count("dispatch", d->name, dispatch(d->shader, d->groups, threads));
+            count({"dispatch", d->name, 1, dispatch(d->shader, d->groups, threads)});
             continue;
         }
         if (DrawBatch const* const b = std::get_if<DrawBatch>(&c)) {
-            if (b->count) count("draw", b->name, run_batch(*b, threads, options), b->count);
+            if (b->count) count(run_batch(*b, threads, options));
             continue;
         }
         Draw const& d = std::get<Draw>(c);
         DrawProgress progress;
         if (options.progress && d.shows_surface())
             progress = [&](std::size_t n, std::size_t) { options.progress(done + n, all); };
-        count("draw", d.name, run_draw(d, threads, options, progress));
+        count(counted(d, run_draw(d, threads, options, progress)));
         done += d.patches.size();
     }
     return out;

@@ -18,6 +18,7 @@
 #include <glm/vec3.hpp>
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <variant>
 
@@ -161,6 +162,10 @@ struct CommandStatistics {
     std::string name;
     std::uint64_t number = 0; ///< how many
     DrawStatistics statistics;
+    std::uint64_t own_targets = 0; ///< of draws into targets of their own (Draw::target)
+    std::map<std::uint64_t, std::uint64_t> draws = {}; ///< by the fragments that each shaded
+
+    CommandStatistics& operator+=(CommandStatistics const& o);
 };
 
 struct ListStatistics {

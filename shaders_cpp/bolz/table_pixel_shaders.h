@@ -77,8 +77,8 @@ template <class T> float3<T> rounded_cross(float3<T> const& a, float3<T> const& 
 {
     Routine<T> const here("rounded_cross");
     auto const difference = [](T const& p, T const& q) -> T { return p - q; };
-    T const yz = a.y * b.z, zy = a.z * b.y, zx = a.z * b.x, xz = a.x * b.z, xy = a.x * b.y,
-            yx = a.y * b.x;
+    T const yz = a.y * b.z, zx = a.z * b.x, xy = a.x * b.y;
+    T const zy = a.z * b.y, xz = a.x * b.z, yx = a.y * b.x;
     return {difference(yz, zy), difference(zx, xz), difference(xy, yx)};
 }
 

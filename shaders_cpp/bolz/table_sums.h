@@ -15,6 +15,8 @@
 #include "emu/texture.h"
 #include "shaders_cpp/records.h"
 
+#include <algorithm>
+
 namespace tessemu {
 
 /// Where tables lie in a texture.
@@ -73,8 +75,8 @@ struct OrderedSums {
         for (float3<T>& s : sums) s = {T(0), T(0), T(0)};
         for (int pair : loop<T>(count / 2)) {
             auto const offset = [&](int k) -> T { return load<T>(offsets, 4 * pair + k); };
-            float2<T> const first(T(offset(0) + at.x), T(offset(1) + at.y)),
-                second(T(offset(2) + at.x), T(offset(3) + at.y));
+            float2<T> const first{T(offset(0) + at.x), T(offset(1) + at.y)},
+                second{T(offset(2) + at.x), T(offset(3) + at.y)};
             float3<T> const a = detail::control_point<T>(points, 2 * pair),
                             b = detail::control_point<T>(points, 2 * pair + 1);
             for (std::size_t i = 0; i < n; ++i)
@@ -88,31 +90,30 @@ struct OrderedSums {
 
 /// Control points in the order of the tables, four of which share a texel.
 struct PackedSums {
-    static constexpr int kAtOnce = 4, kChannels = 4;
+    static constexpr int kChannels = 4;
 
     ConstantBuffer<float> points; ///< [control point][4]: x, y, z, 0
     TableLayout layout;           ///< of texels with four tables each
-    int count = 0;                ///< of control points, a multiple of 4: the last may be 0
+    int count = 0;                ///< of control points
 
-    /// \cost  for four control points 1 or 2 add, and for each set 1 fetch, 12 mul, 12 add
+    /// \cost  for four control points 2 add, and for each set 1 fetch, 12 mul, 12 add
     template <class T, std::size_t n>
     std::array<float3<T>, n> operator()(std::array<Texture2D, n> const& tables,
                                         float2<T> const& at) const
     {
         std::array<float3<T>, n> sums;
         for (float3<T>& s : sums) s = {T(0), T(0), T(0)};
-        for (int group : loop<T>(count / 4)) {
-            float2<T> const texel(T(T(float(layout.x(group))) + at.x),
-                                  T(T(float(layout.y(group))) + at.y));
-            std::array<float3<T>, 4> p;
-            for (int k = 0; k < 4; ++k)
-                p[std::size_t(k)] = detail::control_point<T>(points, 4 * group + k);
-            for (std::size_t i = 0; i < n; ++i) {
-                float4<T> const w = fetch_texel<T>(tables[i], texel);
-                sums[i] = add_term(sums[i], w.x, p[0]);
-                sums[i] = add_term(sums[i], w.y, p[1]);
-                sums[i] = add_term(sums[i], w.z, p[2]);
-                sums[i] = add_term(sums[i], w.w, p[3]);
+        for (int group : loop<T>((count + 3) / 4)) {
+            float2<T> const texel{T(T(float(layout.x(group))) + at.x),
+                                  T(T(float(layout.y(group))) + at.y)};
+            std::array<float4<T>, n> w;
+            for (std::size_t i = 0; i < n; ++i) w[i] = fetch_texel<T>(tables[i], texel);
+            for (int k = 4 * group; k < std::min(count, 4 * group + 4); ++k) {
+                float3<T> const p = detail::control_point<T>(points, k);
+                for (std::size_t i = 0; i < n; ++i) {
+                    T const weight[4] = {w[i].x, w[i].y, w[i].z, w[i].w};
+                    sums[i] = add_term(sums[i], weight[k % 4], p);
+                }
             }
         }
         return sums;

@@ -168,6 +168,124 @@ TEST(Cost, HowAFramesPatchesAreSpreadOverDrawsDoesNotShow)
     EXPECT_EQ(one.stages[1].memory, three.stages[1].memory);
 }
 
+// ---- GPUs whose shaders are assembly
+
+// Draws of so many fragments each, of 80 additions, 48 products and 16 texels.
+CommandStatistics draws_of(char const* name, std::vector<std::uint64_t> const& fragments,
+                           bool own_targets)
+{
+    CommandStatistics c{"draw", name, fragments.size(), {}};
+    for (std::uint64_t n : fragments) {
+        ++c.draws[n];
+        c.statistics.pipeline.PSInvocations += n;
+    }
+    std::uint64_t const n = c.statistics.pipeline.PSInvocations;
+    StageStatistics pixel = stage("pixel_shader", 48 * n, 0,
+                                  {{"t", ResourceKind::Texture, 16 * n, 64 * n, 4096}}),
+                    merger = stage("output_merger", 0, 0, {});
+    pixel.flops.add = 80 * n;
+    merger.output_bytes = 16 * n;
+    c.statistics.stages = {pixel, merger};
+    if (own_targets) c.own_targets = fragments.size();
+    return c;
+}
+
+GpuModel assembly()
+{
+    GpuModel m;
+    m.name = "toy";
+    m.issues["pixel_shader"] = 100;
+    m.components = 4;
+    m.fragment_batch = 512;
+    return m;
+}
+
+// A patch of 1089 fragments fills two batches of 512 and 65 places of a third.
+TEST(CostOfAssembly, FragmentsRunInBatchesThatDrawsDoNotShare)
+{
+    GpuModel const m = assembly();
+    EXPECT_DOUBLE_EQ(utilisation(m, {{1089, 300}}), 1089.0 / 1536);
+    EXPECT_DOUBLE_EQ(utilisation(m, {{512, 7}}), 1);
+    EXPECT_DOUBLE_EQ(utilisation(m, {{1, 1}, {1023, 1}}), 1024.0 / 1536);
+    EXPECT_EQ(utilisation(m, {{0, 3}}), 1);
+    EXPECT_EQ(utilisation({}, {{1089, 3}}), 1);
+
+    // 48 products in as many of the 80 sums: 20 instructions of four, and 16 of texels.
+    std::vector<CommandStatistics> const frame{draws_of("positions", {1089, 1089}, false),
+                                               draws_of("normals", {512}, false)};
+    DrawCost const c = estimate_cost(m, frame);
+    ASSERT_EQ(c.stages.size(), 2u);
+    EXPECT_DOUBLE_EQ(c.stages[0].arithmetic, (2 * 1536 + 512) * 20 / 100.0);
+    EXPECT_DOUBLE_EQ(c.stages[0].fetch, (2 * 1536 + 512) * 16 / 100.0);
+    EXPECT_EQ(c.stages[0].bound(), "arithmetic");
+    EXPECT_EQ(c.bound, "pixel_shader");
+    EXPECT_DOUBLE_EQ(estimate_cost(m, frame[1].statistics).seconds, 512 * 36 / 100.0);
+}
+
+TEST(CostOfAssembly, TargetsOfDrawsAreSwitchedToAndTravel)
+{
+    GpuModel m = assembly();
+    std::vector<CommandStatistics> const frame{draws_of("positions", {1089, 1089}, true),
+                                               draws_of("surface", {512}, false)};
+    double const shaders = estimate_cost(m, frame).seconds;
+    EXPECT_EQ(estimate_cost(m, frame).stages.size(), 2u) << "a rate that nobody knows has no row";
+    m.target_switches = 1e-3;
+    m.bus = 8;
+    DrawCost const c = estimate_cost(m, frame);
+    ASSERT_EQ(c.stages.size(), 4u);
+    EXPECT_EQ(c.stages[2].stage, "target_switch");
+    EXPECT_DOUBLE_EQ(c.stages[2].seconds(), 2000);
+    EXPECT_EQ(c.stages[2].bound(), "rate");
+    EXPECT_EQ(c.stages[3].stage, "bus");
+    EXPECT_DOUBLE_EQ(c.stages[3].seconds(), 2 * 16 * 2 * 1089 / 8.0) << "there and back";
+    EXPECT_EQ(c.bound, "bus");
+    EXPECT_DOUBLE_EQ(c.seconds, c.stages[3].seconds());
+    EXPECT_DOUBLE_EQ(c.shaders, shaders) << "they work beside the shaders";
+}
+
+TEST(CostOfAssembly, AStageThatTheGpuLacksIsTheCpusOrRefused)
+{
+    GpuModel m = assembly();
+    m.bus = 10;
+    m.stages = {"pixel_shader", "output_merger"};
+    m.cpu_stages = {"compute_shader"};
+    std::vector<CommandStatistics> frame{draws_of("positions", {512}, false)};
+    double const without = estimate_cost(m, frame).seconds;
+    CommandStatistics constants{"dispatch", "patch constants", 1, {}};
+    constants.statistics.stages = {stage("compute_shader", 1u << 30, 0, {})};
+    constants.statistics.stages[0].output_bytes = 100;
+    frame.push_back(constants);
+    DrawCost const c = estimate_cost(m, frame);
+    EXPECT_EQ(c.seconds, without);
+    ASSERT_EQ(c.stages.size(), 3u);
+    EXPECT_EQ(c.stages[2].stage, "bus");
+    EXPECT_DOUBLE_EQ(c.stages[2].seconds(), 10) << "once";
+
+    frame[1].statistics.stages[0].stage = "hull_shader";
+    try {
+        estimate_cost(m, frame);
+        ADD_FAILURE() << "no error";
+    } catch (Error const& e) {
+        EXPECT_STREQ(e.what(), "toy has no hull_shader, which the scheme uses; it has "
+                               "pixel_shader, output_merger");
+    }
+}
+
+TEST(Gpu, TheCardOfBolz03HasThePapersNumbers)
+{
+    GpuModel const m = load_gpu_model("geforce-fx");
+    EXPECT_EQ(m.issues.at("pixel_shader"), 1000e6);
+    EXPECT_EQ(m.issues.size(), 1u);
+    EXPECT_EQ(m.fragment_batch, 512);
+    EXPECT_EQ(m.target_switches, 200);
+    EXPECT_EQ(m.arithmetic, GpuModel::kUnknown);
+    EXPECT_EQ(m.bandwidth, GpuModel::kUnknown);
+    EXPECT_TRUE(m.has("pixel_shader"));
+    for (char const* stage : {"hull_shader", "domain_shader", "geometry_shader", "stream_output"})
+        EXPECT_FALSE(m.has(stage));
+    for (auto const& [place, source] : m.sources) EXPECT_GT(source.size(), 20u) << place;
+}
+
 // The built-in description's two fitted numbers are what a fit gives today, to the digits that the
 // file has.
 void expect_stored(char const* name, GpuModel const& fitted)
@@ -336,7 +454,14 @@ TEST(GpuFile, RatesArePerClockOrPerSecondAndUnknownWhereTheyAreLeftOut)
                   "texture": {"value": 0.5, "per": "fast", "source": "s4"}},
         "cache_bytes": {"value": 7, "source": "s5"},
         "group_width": {"value": 32, "source": "s6"},
-        "vertex_cache": {"value": "lru:9", "source": "s7"}})",
+        "vertex_cache": {"value": "lru:9", "source": "s7"},
+        "issues": {"pixel_shader": {"value": 2, "per": "fast", "source": "s8"}},
+        "components": {"value": 3, "source": "s9"},
+        "fragment_batch": {"value": 512, "source": "s10"},
+        "target_switches": {"value": 200, "per": "second", "source": "s11"},
+        "bus": {"value": 8, "per": "second", "source": "s12"},
+        "stages": {"value": ["pixel_shader"], "source": "s13"},
+        "cpu_stages": {"value": ["compute_shader"], "source": "s14"}})",
                                        "m.json");
     EXPECT_EQ(m.name, "a");
     EXPECT_EQ(m.arithmetic, 6e9);
@@ -350,10 +475,19 @@ TEST(GpuFile, RatesArePerClockOrPerSecondAndUnknownWhereTheyAreLeftOut)
          {m.special, m.bandwidth, m.tessellator, m.tessellated_triangles, m.setup, m.raster})
         EXPECT_EQ(unknown, GpuModel::kUnknown);
     EXPECT_EQ(m.overhead, 0);
-    std::map<std::string, std::string> const sources{{"clocks.fast", "s1"}, {"arithmetic", "s2"},
-                                                     {"fetch.any", "s3"},   {"fetch.texture", "s4"},
-                                                     {"cache_bytes", "s5"}, {"group_width", "s6"},
-                                                     {"vertex_cache", "s7"}};
+    EXPECT_EQ(m.issues, (std::map<std::string, double>{{"pixel_shader", 4e9}}));
+    EXPECT_EQ(m.components, 3);
+    EXPECT_EQ(m.fragment_batch, 512);
+    EXPECT_EQ(m.target_switches, 200);
+    EXPECT_EQ(m.bus, 8);
+    EXPECT_TRUE(m.has("pixel_shader") && !m.has("compute_shader"));
+    EXPECT_EQ(m.cpu_stages, std::vector<std::string>{"compute_shader"});
+    std::map<std::string, std::string> const sources{
+        {"clocks.fast", "s1"},     {"arithmetic", "s2"},          {"fetch.any", "s3"},
+        {"fetch.texture", "s4"},   {"cache_bytes", "s5"},         {"group_width", "s6"},
+        {"vertex_cache", "s7"},    {"issues.pixel_shader", "s8"}, {"components", "s9"},
+        {"fragment_batch", "s10"}, {"target_switches", "s11"},    {"bus", "s12"},
+        {"stages", "s13"},         {"cpu_stages", "s14"}};
     EXPECT_EQ(m.sources, sources);
 }
 
@@ -382,7 +516,19 @@ TEST(GpuFile, NamesWhatIsWrong)
              {head + R"("fetch": {"milk": {"value": 1, "per": "second", "source": "s"}}})",
               "fetch.milk"},
              {head + R"("group_width": {"value": 1.5, "source": "s"}})", "1.5"},
-             {head + R"("vertex_cache": {"value": "big", "source": "s"}})", "big"}}) {
+             {head + R"("vertex_cache": {"value": "big", "source": "s"}})", "big"},
+             {head + R"("issues": 3})", "'issues'"},
+             {head + R"("issues": {"mixer": {"value": 1, "per": "second", "source": "s"}}})",
+              "mixer"},
+             {head + R"("issues": {"rasterizer": {"value": 1, "per": "second", "source": "s"}}})",
+              "no shader"},
+             {head + R"("components": {"value": 5, "source": "s"}})", "up to 4"},
+             {head + R"("fragment_batch": {"value": 0.5, "source": "s"}})", "0.5"},
+             {head + R"("stages": {"value": "pixel_shader", "source": "s"}})", "list"},
+             {head + R"("stages": {"value": ["mixer"], "source": "s"}})", "mixer"},
+             {head + R"("stages": {"value": ["pixel_shader"]}})", "no source"},
+             {head + R"("cpu_stages": {"value": ["pixel_shader"], "source": "s"}})",
+              "which the GPU has"}}) {
         EXPECT_NE(message(json).find(words), std::string::npos) << json << ": " << message(json);
         EXPECT_EQ(message(json).find("m.json"), 0u) << message(json);
     }

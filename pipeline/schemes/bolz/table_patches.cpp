@@ -10,14 +10,12 @@ namespace tessemu {
 
 namespace {
 
-int padded(int points, int at_once)
+// Control points that a sum takes for a patch.
+int summed(int points, TableOrder order)
 {
-    return (points + at_once - 1) / at_once * at_once;
-}
-
-int at_once(TableOrder order)
-{
-    return order == TableOrder::Global ? OrderedSums::kAtOnce : PackedSums::kAtOnce;
+    if (order == TableOrder::Table) return points;
+    constexpr int kAtOnce = OrderedSums::kAtOnce;
+    return (points + kAtOnce - 1) / kAtOnce * kAtOnce;
 }
 
 static_assert(TableLayout::kSide == kTableSide);
@@ -122,7 +120,7 @@ void TablePatches::add_patches(RefinedMesh const& mesh, MeshBasis const& basis, 
             std::stable_sort(order_of.begin(), order_of.end(),
                              [&](auto a, auto b) { return vertex(a) < vertex(b); });
         out.first = std::uint32_t(vertices.size());
-        out.count = std::uint32_t(padded(points, at_once(order)));
+        out.count = std::uint32_t(summed(points, order));
         for (std::uint32_t k : order_of) {
             vertices.push_back(vertex(k));
             if (order == TableOrder::Global) {
