@@ -101,7 +101,7 @@ std::string const& SharedEdges::edge_in_words(std::vector<SeenPoint> const& seen
     return words_[0];
 }
 
-std::uint8_t SharedEdges::side_of(MeshPoint const& point, std::uint32_t face) const
+std::uint16_t SharedEdges::side_of(MeshPoint const& point, std::uint32_t face) const
 {
     if (!sharpness_ || point.kind == MeshPoint::Kind::Face) return 0;
     auto const is_sharp = [&](HalfEdge h) { return sharpness_->edge(h) >= kInfinitelySharp; };
@@ -111,14 +111,14 @@ std::uint8_t SharedEdges::side_of(MeshPoint const& point, std::uint32_t face) co
     }
     // A side lies between two sharp edges of the ring, or one that is met twice.
     auto const ring = topology_.ring(point.a);
-    std::uint8_t before = 0, all = 0;
+    std::uint16_t before = 0, all = 0;
     bool met = false;
     for (HalfEdge h : ring) {
         all += is_sharp(h);
         if (!met) before = all;
         met = met || topology_.face_of(h) == face;
     }
-    return topology_.is_boundary(point.a) || all == 0 ? before : std::uint8_t(before % all);
+    return topology_.is_boundary(point.a) || all == 0 ? before : std::uint16_t(before % all);
 }
 
 void SharedEdges::add(SurfacePatch const& patch, bool keep_triangles)

@@ -22,7 +22,7 @@ struct SeenPoint {
     int patches = 1;                        ///< that have the point on their outline
     std::uint8_t edge = 0;                  ///< see SharedEdges::edge_in_words
     /// Of the infinitely sharp edges that the point lies on, where each side has a normal.
-    std::uint8_t side = 0;
+    std::uint16_t side = 0;
 
     glm::vec3 displaced() const;
 };
@@ -90,7 +90,7 @@ private:
     void add(SurfacePatch const& patch, bool keep_triangles);
     void extend(glm::vec3 position);
     std::uint8_t number_of_word(std::string const& word);
-    std::uint8_t side_of(MeshPoint const& point, std::uint32_t face) const;
+    std::uint16_t side_of(MeshPoint const& point, std::uint32_t face) const;
     /// Gives the point as the first patch has it.
     glm::vec3 record(MeshPoint const& point, SeenPoint const& seen);
 

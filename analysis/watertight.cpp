@@ -203,7 +203,7 @@ private:
         for (MeshPoint const* p : order_) {
             std::vector<SeenPoint> const& all = surface_.points().at(*p);
             // Of a normal each side of infinitely sharp edges by itself.
-            std::map<std::uint8_t, std::vector<SeenPoint>> sides;
+            std::map<std::uint16_t, std::vector<SeenPoint>> sides;
             for (SeenPoint const& s : all)
                 sides[first == SeenPoint::kNormal ? s.side : 0].push_back(s);
             parted += sides.size() > 1;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cassert>
 #include <map>
-#include <set>
 
 namespace tessemu {
 
@@ -124,6 +123,17 @@ public:
             out.push_back(x.is_face ? across(of[(first + x.index) % of.size()])
                                     : edge_end(of, first + x.index));
         }
+    }
+
+    // A name for the side of infinitely sharp edges that a half-edge's face lies on, around its
+    // vertex: the last such edge before the face; none where there is none.
+    HalfEdge side_of(HalfEdge h) const
+    {
+        auto const ring = t_.ring(t_.vertex_of(h));
+        std::size_t j = t_.ring_index(h);
+        for (std::size_t n = 0; n < ring.size(); ++n, j = (j + ring.size() - 1) % ring.size())
+            if (sharpness_.edge(ring[j]) >= kInfinitelySharp) return ring[j];
+        return Topology::kNone;
     }
 
 private:
@@ -261,20 +271,29 @@ MeshBasis::MeshBasis(RefinedMesh const& refined, BasisTableStore* store, BasisOp
     std::map<PatchType, std::uint32_t> numbers;
     std::vector<PatchType> types;
     std::vector<FoundPatch> found;
-    // By vertex and the first face of its sector; of a closed ring one.
+    // By vertex and the side of its infinitely sharp edges.
     std::map<std::array<std::uint32_t, 2>, std::uint32_t> corners;
     for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
         FoundPatch const& p = found.emplace_back(finder.at(finder.corner_of(f)));
         auto const [type, is_new_type] = numbers.try_emplace(p.type, std::uint32_t(types.size()));
         if (is_new_type) types.push_back(p.type);
-        auto const [corner, is_new_corner] = corners.try_emplace(
-            {topology.vertex_of(p.half_edge), p.type.corner.closed ? 0 : p.first_face},
-            std::uint32_t(corner_owner_.size()));
+        auto const [corner, is_new_corner] =
+            corners.try_emplace({topology.vertex_of(p.half_edge), finder.side_of(p.half_edge)},
+                                std::uint32_t(corner_owner_.size()));
         if (is_new_corner) corner_owner_.push_back(f);
         patches_.push_back(
             {f, int(p.half_edge - mesh.face_start[f]), type->second, 0, corner->second});
     }
 
+    constexpr std::uint64_t kMostBytes = std::uint64_t(8) << 30;
+    std::uint64_t bytes = 0; // in double, and as much again in floats and as textures
+    for (PatchType const& t : types)
+        bytes += 2 * 3 * sizeof(double) * kTableSamples * std::uint64_t(t.points());
+    if (bytes > kMostBytes)
+        throw LimitError("bytes of basis-function tables of " + std::to_string(types.size()) +
+                             " types of patches (sectors of many faces have as many types, and so "
+                             "have sharpnesses that are all different)",
+                         bytes, kMostBytes);
     std::vector<std::optional<BasisTables>> tables(types.size());
     std::vector<std::size_t> missing;
     std::size_t done = 0;
@@ -326,7 +345,12 @@ MeshBasis::MeshBasis(RefinedMesh const& refined, BasisTableStore* store, BasisOp
     }
     if (!options.enforced) return;
 
-    std::set<Joint> joints;
+    // Patches of equal types meet alike: what two of them share stands for all.
+    std::map<Joint, JointPoints> joints;
+    auto const points_of = [&](BasisPatch const& p) {
+        return std::span(points_).subspan(p.first_point, std::size_t(types_[p.type].points));
+    };
+    std::map<std::uint32_t, std::uint16_t> number_in_a;
     std::vector<std::uint32_t> const& start = mesh.face_start;
     auto const side_of = [&](HalfEdge h) { // of its face's patch, from its corner on
         return PatchSide((h - start[topology.face_of(h)] + 4 -
@@ -339,10 +363,26 @@ MeshBasis::MeshBasis(RefinedMesh const& refined, BasisTableStore* store, BasisOp
         if (other == Topology::kNone || (side != PatchSide::Lower && side != PatchSide::Right))
             continue;
         assert(side_of(other) == (side == PatchSide::Lower ? PatchSide::Left : PatchSide::Upper));
-        joints.insert(
-            {patches_[topology.face_of(h)].type, side, patches_[topology.face_of(other)].type});
+        BasisPatch const &a = patches_[topology.face_of(h)], &b = patches_[topology.face_of(other)];
+        auto const [joint, is_new] = joints.try_emplace({a.type, side, b.type});
+        if (!is_new) continue;
+        number_in_a.clear();
+        for (std::uint32_t v : points_of(a))
+            number_in_a.emplace(v, std::uint16_t(number_in_a.size()));
+        std::uint16_t k = 0;
+        for (std::uint32_t v : points_of(b)) {
+            auto const in_a = number_in_a.find(v);
+            if (in_a != number_in_a.end()) joint->second.push_back({in_a->second, k});
+            ++k;
+        }
     }
-    symmetry_ = enforce_symmetry(types_, std::vector<Joint>(joints.begin(), joints.end()));
+    std::vector<Joint> list;
+    std::vector<JointPoints> points;
+    for (auto& [joint, shared] : joints) {
+        list.push_back(joint);
+        points.push_back(std::move(shared));
+    }
+    symmetry_ = enforce_symmetry(types_, list, points);
 }
 
 } // namespace tessemu

@@ -182,6 +182,8 @@ Match match_of(Joint const& joint, PatchTypeTables const& ta, PatchTypeTables co
             out.set(point, name.is_face ? b.face(name.index) : b.edge(name.index));
         if (name.of == PatchType::DiagonalVertex)
             out.set(point, b.beyond({PatchType::RightVertex, name.index, name.is_face}));
+        if (name.of == PatchType::UpperVertex) // b's (2,2), seen by the same face
+            out.set(point, b.beyond({PatchType::DiagonalVertex, name.index, name.is_face}));
     }
     return out;
 }
@@ -510,17 +512,23 @@ void count_classes(std::span<PatchTypeTables const> types, std::span<Joint const
 
 } // namespace
 
-SymmetryReport enforce_symmetry(std::span<PatchTypeTables> types, std::span<Joint const> joints)
+SymmetryReport enforce_symmetry(std::span<PatchTypeTables> types, std::span<Joint const> joints,
+                                std::span<JointPoints const> points, CountClasses classes)
 {
     SymmetryReport out;
     out.joints = joints.size();
-    count_classes(types, joints, out);
+    if (classes == CountClasses::Yes) count_classes(types, joints, out);
     Entries const entries(types);
     SignedSets sets(entries.size());
-    for (Joint const& joint : joints) {
+    for (std::size_t number = 0; number < joints.size(); ++number) {
+        Joint const& joint = joints[number];
         PatchTypeTables const &a = types[joint.a], &b = types[joint.b];
         PatchSide const side_a = joint.side, side_b = other_side(side_a);
-        Match const match = match_of(joint, a, b);
+        Match match(a, b);
+        if (points.empty())
+            match = match_of(joint, a, b);
+        else
+            for (auto const& [of_a, of_b] : points[number]) match.set(of_a, of_b);
         Tangents const ta = tangents_of(side_a), tb = tangents_of(side_b);
         bool const on_corner = side_a == PatchSide::Lower;
         bool const shares_across =

@@ -47,6 +47,9 @@ struct Joint {
     auto operator<=>(Joint const&) const = default;
 };
 
+/// Of a joint: control points of a and of b that are one.
+using JointPoints = std::vector<std::array<std::uint16_t, 2>>;
+
 /// What the types of one set of rules can share with each other, and with their mirror images; of
 /// types that nothing beyond has an influence on, and without finite sharpness.
 std::vector<Joint> possible_joints(std::span<PatchTypeTables const> types);
@@ -73,9 +76,16 @@ struct SymmetryReport {
     std::size_t passes = 0;         ///< until nothing changed
 };
 
+/// Whether a report has classes, which say nothing of a mesh's few types.
+enum class CountClasses { No, Yes };
+
 /// Entries that joints make equal get the least of their values, those of tangents the value
 /// nearest to 0 with its sign; of a control point that the other patch lacks they become 0. A
 /// sample on two sides is in the classes of both.
-SymmetryReport enforce_symmetry(std::span<PatchTypeTables> types, std::span<Joint const> joints);
+///
+/// \param points  of each joint, where a mesh tells; empty: as the types' names of them say
+SymmetryReport enforce_symmetry(std::span<PatchTypeTables> types, std::span<Joint const> joints,
+                                std::span<JointPoints const> points,
+                                CountClasses classes = CountClasses::No);
 
 } // namespace tessemu

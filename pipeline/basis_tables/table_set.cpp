@@ -76,7 +76,7 @@ TableSet make_table_set(std::span<TableFamily const> families, BasisTableStore& 
             if (progress) progress(done, count);
         }
     }
-    out.symmetry = enforce_symmetry(all, possible_joints(all));
+    out.symmetry = enforce_symmetry(all, possible_joints(all), {}, CountClasses::Yes);
     return out;
 }
 

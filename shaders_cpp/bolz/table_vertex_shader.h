@@ -112,7 +112,8 @@ private:
 
     template <class T> struct Normal {
         float3<T> unit;
-        mask_of<T> is_pole; ///< the same from all sides
+        mask_of<T> is_pole;  ///< the same from all sides
+        float3<T> direction; ///< as the target has it, of any length
     };
 
     /// \param x, y  the vertex in its patch
@@ -138,7 +139,8 @@ private:
         direction = select(at_corner | is_pole, float3<T>(T(0), T(0), T(0)), direction);
         // Of products that are 0 the sign depends on the patch: + 0 makes it +.
         float3<T> const zero(T(0), T(0), T(0));
-        return {unit_or(direction, [&] { return otherwise; }) + zero, is_pole};
+        return {unit_or(direction, [&] { return otherwise; }) + zero, is_pole,
+                float3<T>(texel.x, texel.y, texel.z)};
     }
 
     /// The points that have a pole's normal: corners that are one, edges between two that are the
@@ -190,9 +192,13 @@ private:
                     float4<T> const texel = edge == 0
                                                 ? load<T>(normals, Int(column), Int(row) + along)
                                                 : load<T>(normals, Int(column) + along, Int(row));
-                    float3<T> const other =
-                        unit_or(float3<T>(texel.x, texel.y, texel.z), [&] { return n; });
-                    return unit_or(float3<T>(n + other), [&] { return other; });
+                    float3<T> const own = unit_or_zero(normal.direction),
+                                    other = unit_or_zero(float3<T>(texel.x, texel.y, texel.z)),
+                                    zero(T(0), T(0), T(0)), z(T(0), T(0), T(1));
+                    // The side whose edge 0 it is first: both choose alike where they cancel.
+                    float3<T> const a = edge == 0 ? own : other, b = edge == 0 ? other : own;
+                    float3<T> const sum = a + b;
+                    return unit_or(sum, [&] { return unit_or(a, [&] { return z; }); }) + zero;
                 },
                 out);
         }

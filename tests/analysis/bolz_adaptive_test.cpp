@@ -67,7 +67,11 @@ void expect_closed(SchemeOnMesh const& on, WatertightSettings const& settings,
             << about << ": " << v.name << " " << (v.sites.empty() ? v.reason : v.sites[0].text);
         if (v.verdict == Verdict::Pass) passed.insert(v.name);
     }
-    for (char const* name : {"topology", "position", "normal"})
+    std::vector<std::string> expected{"position", "normal"};
+    // With one segment everywhere there is no point inside an edge.
+    if (on.patches->level_counts()[0] < on.patches->mesh().mesh().faces())
+        expected.push_back("topology");
+    for (std::string const& name : expected)
         EXPECT_TRUE(passed.count(name)) << about << ": " << name;
     if (settings.frame.displacement) {
         EXPECT_TRUE(passed.count("displaced")) << about;
@@ -120,7 +124,7 @@ TEST(BolzAdaptive, LiesWithinTheDistanceOfTheLimitSurface)
     for (auto const& [name, mesh] : cages())
         for (double distance : {1e-2, 1e-3}) {
             SchemeOnMesh const on = adaptive(mesh, std::to_string(distance));
-            SurfaceComparison const c = compare_with_limit(*on.patches, {}, 5, ThreadPool(0));
+            SurfaceComparison const c = compare_with_limit(*on.patches, {}, 4, ThreadPool(0));
             EXPECT_GT(c.from_limit.samples, 1000u) << name;
             EXPECT_LE(c.from_limit.max, distance) << name;
             EXPECT_LT(c.equal_position.max, 5e-7) << name; // vertices are on it
@@ -154,7 +158,8 @@ TEST(BolzAdaptive, WarnsWhereTheTablesEndBeforeTheDistance)
     for (std::string const& w : adaptive(tagged_cube(), "2e-5").warnings) said += w;
     EXPECT_NE(said.find("--subdivide"), std::string::npos) << said;
     EXPECT_NE(said.find("adapt=2e-05: "), std::string::npos) << said;
-    EXPECT_TRUE(adaptive(tagged_cube(), "1e-2").warnings.empty());
+    for (std::string const& w : adaptive(load_model("golem").mesh, "1e-2").warnings)
+        EXPECT_EQ(w.find("adapt="), std::string::npos) << w;
 }
 
 class SharedCages : public testing::TestWithParam<std::string> {};

@@ -7,6 +7,7 @@
 #include "io/model.h"
 #include "pipeline/mesh/animation.h"
 #include "pipeline/schemes/scheme.h"
+#include "shaders_cpp/bolz/table_pixel_shaders.h"
 #include "tests/support/edges.h"
 #include "tests/support/files.h"
 #include "tests/support/gzip.h"
@@ -117,6 +118,147 @@ TEST(Bolz, IsTheLimitSurfaceOfRandomTaggedMeshes)
         // corners of small faces.
         EXPECT_LT(quantile(e.angle, e.weight, 0.99), 1e-3) << seed;
     }
+}
+
+// All tags infinite, for Biermann's rules know no others.
+ControlMesh with_infinite_tags(ControlMesh mesh)
+{
+    for (auto& c : mesh.creases) c.sharpness = 10;
+    for (auto& c : mesh.corners) c.sharpness = 10;
+    return mesh;
+}
+
+// Three quads around a corner that they turn by more than half a circle.
+ControlMesh l_shape()
+{
+    ControlMesh mesh;
+    for (auto const& p : {glm::vec3(0, 0, 0),
+                          {1, 0, 0},
+                          {1, 1, .2f},
+                          {0, 1, 0},
+                          {-1, 1, 0},
+                          {-1, 0, 0},
+                          {-1, -1, .1f},
+                          {0, -1, 0}})
+        mesh.positions.push_back(p);
+    for (auto const& f : {std::array<std::uint32_t, 4>{0, 1, 2, 3}, {0, 3, 4, 5}, {0, 5, 6, 7}})
+        mesh.add_face(f);
+    mesh.corners.push_back({0, 10});
+    return mesh;
+}
+
+// A cube with four infinitely sharp edges at one face, and one of finite sharpness beside them.
+ControlMesh half_sharp_cube(float other)
+{
+    ControlMesh mesh = test::cube().mesh;
+    auto const top = mesh.face(0);
+    for (std::size_t i = 0; i < 4; ++i) mesh.creases.push_back({top[i], top[(i + 1) % 4], 10});
+    for (std::uint32_t f = 1; f < mesh.faces(); ++f)
+        for (std::size_t i = 0; i < 4; ++i) {
+            std::uint32_t const a = mesh.face(f)[i], b = mesh.face(f)[(i + 1) % 4];
+            bool const leaves = (a == top[0]) != (b == top[0]);
+            bool const beside = std::find(top.begin(), top.end(), a) != top.end() &&
+                                std::find(top.begin(), top.end(), b) != top.end();
+            if (!leaves || beside || other == 0) continue;
+            mesh.creases.push_back({a, b, other});
+            return mesh;
+        }
+    return mesh;
+}
+
+void expect_limit(ControlMesh const& mesh, ParameterTexts const& set, std::string const& what)
+{
+    SchemeOnMesh const on = bolz(mesh, set);
+    EqualParameterErrors const e = equal_parameter_errors(*on.patches, {}, 3, ThreadPool(0));
+    EXPECT_GT(e.position_statistics().samples, 50u) << what;
+    EXPECT_LT(e.position_statistics().max, 5e-7) << what;
+    // At corners of sides too: singles, and weights of theirs, turn a normal by some 1e-5.
+    EXPECT_LT(e.normal_statistics().max, 1e-3) << what;
+}
+
+TEST(Bolz, HasTheNormalsOfAllSidesWhateverElseIsSharp)
+{
+    for (float other : {0.0f, 1.5f, 4.0f, 10.0f})
+        expect_limit(half_sharp_cube(other), {}, "finite " + std::to_string(other));
+    expect_limit(l_shape(), {}, "a corner of three faces");
+}
+
+TEST(Bolz, IsTheLimitSurfaceOfBiermannsRulesAtAnyFlatness)
+{
+    for (char const* flatness : {"", "0", "0.5", "1"}) {
+        ParameterTexts set{{"rules", "biermann"}};
+        if (*flatness) set.push_back({"flatness", flatness});
+        std::string const what = std::string("flatness ") + flatness;
+        expect_limit(l_shape(), set, what + ", L");
+        expect_limit(half_sharp_cube(10), set, what + ", sharp cube");
+        expect_limit(test::cube().mesh, set, what + ", cube");
+        for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+            SchemeOnMesh const on = bolz(
+                with_infinite_tags(test::with_random_tags(test::random_mesh(seed), seed)), set);
+            EqualParameterErrors const e =
+                equal_parameter_errors(*on.patches, {}, 3, ThreadPool(0));
+            EXPECT_LT(e.position_statistics().max, 5e-7) << what << ", seed " << seed;
+        }
+    }
+}
+
+// 40 infinitely sharp edges at a vertex, and faces back to back.
+TEST(Bolz, ManySidesAndFoldsStayClosedWhenDisplaced)
+{
+    ControlMesh fan = test::trapezohedron(40).mesh;
+    for (std::uint32_t f = 0; f < fan.faces(); ++f)
+        for (std::size_t i = 0; i < 4; ++i)
+            fan.creases.push_back({fan.face(f)[i], fan.face(f)[(i + 1) % 4], 10});
+    ControlMesh envelope;
+    for (auto const& p : {glm::vec3(0, 0, 0), {1, 0, 0}, {1, 1, 0}, {0, 1, 0}})
+        envelope.positions.push_back(p);
+    for (auto const& f : {std::array<std::uint32_t, 4>{0, 1, 2, 3}, {3, 2, 1, 0}})
+        envelope.add_face(f);
+    for (std::uint32_t i = 0; i < 4; ++i) envelope.creases.push_back({i, (i + 1) % 4, 10});
+    for (ControlMesh const& mesh : {fan, envelope}) {
+        SchemeOnMesh const on = bolz(mesh);
+        WatertightSettings s;
+        s.frame = segments(8);
+        s.frame.displacement =
+            std::make_shared<Displacement const>(Displacement::studs(0.1f, 0.02f));
+        s.rays = 0;
+        for (CheckedVerdict const& v : check_watertight(*on.patches, s, ThreadPool(0))) {
+            if (v.name != "position" && v.name != "normal" && v.name != "displaced") continue;
+            EXPECT_EQ(v.verdict, Verdict::Pass)
+                << v.name << ' ' << (v.sites.empty() ? v.reason : v.sites[0].text);
+        }
+    }
+}
+
+// Level n's vertices are every 2^(5-n)th of level 5's, bit for bit (section 3's coordinates).
+TEST(Bolz, CoarserLevelsSubsampleTheTables)
+{
+    EXPECT_EQ(PatchQuadVertexShader::of_level(5).low, 0.0f);
+    EXPECT_EQ(PatchQuadVertexShader::of_level(5).high, 33.0f);
+    EXPECT_EQ(PatchQuadVertexShader::of_level(4).low, -0.5f);
+    EXPECT_EQ(PatchQuadVertexShader::of_level(4).high, 33.5f);
+    EXPECT_EQ(PatchQuadVertexShader::of_level(0).low, -15.5f);
+    EXPECT_EQ(PatchQuadVertexShader::of_level(0).high, 48.5f);
+    SchemeOnMesh const on = bolz(with_infinite_tags(half_sharp_cube(10)));
+    using Key =
+        std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint16_t, std::uint16_t>;
+    std::map<Key, std::array<glm::vec3, 2>> fine;
+    std::size_t compared = 0;
+    for (int n = 5; n >= 0; --n)
+        visit_surface(
+            *on.patches, segments(float(1 << n)), ThreadPool(0), [&](SurfacePatch const& p) {
+                TessellatedPatch const& at = p.domain().patch;
+                for (std::size_t i = 0; i < p.points(); ++i) {
+                    PatchPlace const& place = p.place();
+                    Key const key{place.face, at.u[i], at.v[i], place.i, place.j};
+                    std::array<glm::vec3, 2> const v{p.vertex(i).position, p.vertex(i).normal};
+                    if (n == 5)
+                        fine[key] = v;
+                    else
+                        EXPECT_EQ(fine.at(key), v), ++compared;
+                }
+            });
+    EXPECT_EQ(compared, 24u * (4 + 9 + 25 + 81 + 289));
 }
 
 std::vector<ControlMesh> tagged_cages()

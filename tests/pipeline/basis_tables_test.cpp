@@ -317,14 +317,14 @@ std::vector<PatchTypeTables> in_single_precision(std::vector<PatchType> const& t
 TEST(Symmetry, HasThePapersClasses)
 {
     auto tables = in_single_precision(test::all_types(6));
-    auto const report = enforce_symmetry(tables, possible_joints(tables));
+    auto const report = enforce_symmetry(tables, possible_joints(tables), {}, CountClasses::Yes);
     EXPECT_EQ(report.off_corner.undirected, 4u);
     EXPECT_EQ(report.off_corner.directed, 8u);
     EXPECT_EQ(report.off_corner_at_a_tag.directed, 6u);
     EXPECT_EQ(report.two_ring.directed, 2u);
     EXPECT_LE(report.passes, 2u);
     // What is equal stays so.
-    auto const again = enforce_symmetry(tables, possible_joints(tables));
+    auto const again = enforce_symmetry(tables, possible_joints(tables), {});
     EXPECT_EQ(again.changed, 0u);
     EXPECT_EQ(again.entries, report.entries);
 }

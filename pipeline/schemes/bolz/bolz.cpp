@@ -373,7 +373,7 @@ private:
         int level = 0;
         while (level <= kMostLevels && float(1 << level) < s.tess_factor) ++level;
         if (level > kMostLevels)
-            throw Error("bolz: " + std::to_string(int(s.tess_factor)) +
+            throw Error("bolz: " + std::to_string(int(std::ceil(s.tess_factor))) +
                         " segments along an edge of a patch, its tables have 32: a step of "
                         "subdivision before it (--subdivide) doubles them");
         auto const l = std::uint8_t(level);
@@ -456,8 +456,8 @@ public:
         info.parameters = {
             words("rules", "of subdivision beside tags", {"opensubdiv", "biermann"}),
             {"flatness",
-             "with rules=biermann, how far a step draws rings of tagged vertices into their "
-             "tangent planes; where it is not given, as far as concave corners need",
+             "with rules=biermann, how far a step draws rings of tagged and extraordinary vertices "
+             "into their tangent planes; where it is not given, as far as concave corners need",
              {},
              0,
              1},

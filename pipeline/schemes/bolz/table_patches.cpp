@@ -50,6 +50,16 @@ PatchKind kind_of(PatchFamily family)
     return {in_words(family), kClasses[std::size_t(family)]};
 }
 
+// When all finite sharpness is gone.
+bool stays_a_corner(Sharpness const& sharpness, std::uint32_t vertex)
+{
+    RingSharpness ring;
+    sharpness.around(vertex, ring);
+    auto const is_infinite = [](float s) { return s >= kInfinitelySharp; };
+    return is_infinite(ring.vertex) ||
+           std::count_if(ring.edge.begin(), ring.edge.end(), is_infinite) > 2;
+}
+
 } // namespace
 
 TablePatches::TablePatches(RefinedMesh const& mesh, MeshBasis const& basis, TableOrder order,
@@ -57,7 +67,7 @@ TablePatches::TablePatches(RefinedMesh const& mesh, MeshBasis const& basis, Tabl
 {
     add_textures(basis, order);
     add_patches(mesh, basis, order, hidden);
-    add_corners(mesh, basis);
+    add_corners(mesh, basis, hidden);
 }
 
 void TablePatches::add_textures(MeshBasis const& basis, TableOrder order)
@@ -134,7 +144,8 @@ void TablePatches::add_patches(RefinedMesh const& mesh, MeshBasis const& basis, 
     }
 }
 
-void TablePatches::add_corners(RefinedMesh const& mesh, MeshBasis const& basis)
+void TablePatches::add_corners(RefinedMesh const& mesh, MeshBasis const& basis,
+                               std::vector<char> const& hidden)
 {
     using Faces = CornerNormalShader::Faces;
     Topology const& topology = mesh.topology();
@@ -154,6 +165,7 @@ void TablePatches::add_corners(RefinedMesh const& mesh, MeshBasis const& basis)
     };
     for (BasisPatch const& p : basis.patches()) {
         faces[p.corner].push_back(p.face);
+        if (hidden[p.face]) continue; // it moves nothing
         auto& here = corners_of[vertex_of(p)];
         if (std::find(here.begin(), here.end(), p.corner) == here.end()) here.push_back(p.corner);
     }
@@ -168,9 +180,11 @@ void TablePatches::add_corners(RefinedMesh const& mesh, MeshBasis const& basis)
             use = Faces::Normal;
             which = poles.at(vertex);
         } else if (family != PatchFamily::Regular && family != PatchFamily::Smooth) {
-            bool const is_corner =
-                family == PatchFamily::ConvexCorner || family == PatchFamily::ConcaveCorner;
-            use = is_corner ? Faces::Outside : Faces::Fallback;
+            // By the plain rules a corner's tangents are those of its two edges, however far its
+            // faces turn.
+            bool const may_turn = control.rules.sectors == SectorRules::OpenSubdiv &&
+                                  faces[c].size() > 1 && stays_a_corner(sharpness, vertex);
+            use = may_turn ? Faces::Outside : Faces::Fallback;
             which = std::uint32_t(poles.size());
             for (std::uint32_t f : faces[c]) {
                 auto const quad = control.face(f);
@@ -202,7 +216,9 @@ void TablePatches::add_corners(RefinedMesh const& mesh, MeshBasis const& basis)
     for (Patch& p : patches) {
         auto const quad = control.face(p.face);
         for (std::uint32_t k = 0; k < 4; ++k)
-            p.poles[k] = has_poles ? poles.at(quad[(p.rotation + k) % 4]) : kNone;
+            p.poles[k] = has_poles && sharpness.is_untagged(quad[(p.rotation + k) % 4])
+                             ? poles.at(quad[(p.rotation + k) % 4])
+                             : kNone;
         p.shared = shared[quad[p.rotation]];
     }
 }

@@ -53,7 +53,7 @@ struct TablePatches {
     std::vector<std::uint32_t> corners, corner_vertices;
     std::vector<float> corner_weights;
     std::vector<std::uint32_t> shared_first{0}, shared_corners;
-    Poles poles;              ///< the mesh's, and behind them the faces at tagged corners
+    Poles poles;              ///< of the mesh, and behind them each tagged corner's faces
     bool has_poles = false;   ///< the mesh has
     bool has_creases = false; ///< two patches that are drawn meet at an infinitely sharp edge
 
@@ -61,7 +61,8 @@ private:
     void add_textures(MeshBasis const& basis, TableOrder order);
     void add_patches(RefinedMesh const& mesh, MeshBasis const& basis, TableOrder order,
                      std::vector<char> const& hidden);
-    void add_corners(RefinedMesh const& mesh, MeshBasis const& basis);
+    void add_corners(RefinedMesh const& mesh, MeshBasis const& basis,
+                     std::vector<char> const& hidden);
 };
 
 } // namespace tessemu
