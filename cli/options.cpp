@@ -367,7 +367,8 @@ void check_tessellator(SurfaceRequest const& o)
     SchemeInfo const info = o.model.scheme->info();
     if (info.tessellator) return;
     if (o.partitioning)
-        throw Error("--partitioning is the tessellator's, which " + info.name + " does not have");
+        throw Error("--partitioning is the tessellator's, which " + info.name +
+                    " does not have; --tess says how many segments an edge of a patch has");
     if (o.direct3d10)
         throw Error("--direct3d 10 is a path around the tessellator, which " + info.name +
                     " does not have");

@@ -50,6 +50,12 @@ Valences parse_valences(std::string const& text, std::string const& option)
     return out;
 }
 
+std::string folder_path(std::string const& text, std::string const& option)
+{
+    if (text.empty() || text == "-") refuse(text, option, "a folder: tables are files");
+    return text;
+}
+
 int run(TablesRequest const& o)
 {
     RunOutput out(o.run.json);
@@ -107,7 +113,7 @@ void add_tables(CommandLine& program)
         "  tessemu tables -o cache\n"
         "  tessemu tables --valences 3-8 --rules opensubdiv -o cache --json tables.json\n"
         "  tessemu draw cage.obj --table-cache cache -o cage.png");
-    verb.required("-o", o->folder, plain,
+    verb.required("-o", o->folder, folder_path,
                   "folder for them, a file for each type of patch; --table-cache takes it");
     verb.option("--valences", o->valences, parse_valences,
                 "faces around a vertex: N or FIRST-LAST, 1 to 64", "2-12");

@@ -277,10 +277,12 @@ std::string counters_table(DrawStatistics const& s)
                                f.resource, name_of(f.kind), counted(f.count), counted(f.bytes),
                                counted(f.unique_bytes));
     PipelineStatistics const& p = s.pipeline;
-    out += fmt::format(
-        "\n{} patches, {} domain points, {} triangles, {} after clipping, {} pixels shaded\n",
-        counted(p.HSInvocations), counted(p.DSInvocations), counted(p.CInvocations),
-        counted(p.CPrimitives), counted(p.PSInvocations));
+    out += '\n';
+    if (p.HSInvocations) // else no tessellator made the triangles
+        out += fmt::format("{} patches, {} domain points, ", counted(p.HSInvocations),
+                           counted(p.DSInvocations));
+    out += fmt::format("{} triangles, {} after clipping, {} pixels shaded\n",
+                       counted(p.CInvocations), counted(p.CPrimitives), counted(p.PSInvocations));
     return out;
 }
 

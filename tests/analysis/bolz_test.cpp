@@ -252,10 +252,12 @@ TEST(Bolz, CoarserLevelsSubsampleTheTables)
                     PatchPlace const& place = p.place();
                     Key const key{place.face, at.u[i], at.v[i], place.i, place.j};
                     std::array<glm::vec3, 2> const v{p.vertex(i).position, p.vertex(i).normal};
-                    if (n == 5)
+                    if (n == 5) {
                         fine[key] = v;
-                    else
-                        EXPECT_EQ(fine.at(key), v), ++compared;
+                        continue;
+                    }
+                    EXPECT_EQ(fine.at(key), v);
+                    ++compared;
                 }
             });
     EXPECT_EQ(compared, 24u * (4 + 9 + 25 + 81 + 289));

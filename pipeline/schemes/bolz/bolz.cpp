@@ -360,7 +360,7 @@ private:
         if (found.beyond == 0) return;
         warnings_.push_back(fmt::format(
             "adapt={}: {} of {} patches may lie further from the surface than that with 32 "
-            "segments, up to {:.2g} diagonals: {}",
+            "segments, by the bound up to {:.4g} diagonals: {}",
             distance, found.beyond, drawn.size(), found.largest / diagonal,
             found.rounding > distance * diagonal
                 ? fmt::format("{:.2g} of it is what single precision may add",
