@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/watertight.h"
 #include "io/model.h"
+#include "pipeline/basis_tables/table_store.h"
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/printed.h"
 
