@@ -247,6 +247,16 @@ void refuse(SchemeInfo const& info, MeshFacts const& m, int subdivide)
                                         std::to_string(m.largest_face + 1) + help);
 }
 
+// "; bolz draws them", of the schemes that have a use for a tag.
+std::string who_draws_them(bool MeshRequirements::*tag)
+{
+    std::string names;
+    std::size_t count = 0;
+    for (auto const& s : schemes())
+        if (s->info().takes.*tag) names += (count++ ? ", " : "") + s->info().name;
+    return count == 0 ? "" : "; " + names + (count == 1 ? " draws them" : " draw them");
+}
+
 // What the steps of subdivision leave to a scheme that has no use for it.
 void warn_of_tags(SchemeInfo const& info, RefinedMesh const& refined, std::vector<std::string>& out)
 {
@@ -273,13 +283,15 @@ void warn_of_tags(SchemeInfo const& info, RefinedMesh const& refined, std::vecto
             [&](ControlMesh::Crease const& c) { return is_inside(refined.topology(), c); });
     if (creases && !info.takes.creases)
         out.push_back(counted(std::size_t(creases), "crease edge is", "crease edges are") +
-                      " drawn smooth" + after + ": the scheme knows no creases");
+                      " drawn smooth" + after + ": the scheme knows no creases" +
+                      who_draws_them(&MeshRequirements::creases));
     auto const corners =
         std::count_if(mesh.corners.begin(), mesh.corners.end(),
                       [&](ControlMesh::Corner const& c) { return is_left(c.sharpness); });
     if (corners && !info.takes.corners)
         out.push_back(counted(std::size_t(corners), "sharp corner is", "sharp corners are") +
-                      " drawn smooth" + after + ": the scheme knows no corners");
+                      " drawn smooth" + after + ": the scheme knows no corners" +
+                      who_draws_them(&MeshRequirements::corners));
     ControlMesh const& drawn = refined.mesh();
     bool triangles = false;
     for (std::size_t f = 0; f < drawn.faces() && !triangles; ++f)
