@@ -382,7 +382,7 @@ MeshBasis::MeshBasis(RefinedMesh const& refined, BasisTableStore* store, BasisOp
         list.push_back(joint);
         points.push_back(std::move(shared));
     }
-    symmetry_ = enforce_symmetry(types_, list, points);
+    enforce_symmetry(types_, list, points);
 }
 
 } // namespace tessemu

@@ -47,13 +47,11 @@ public:
     std::size_t corners() const { return corner_owner_.size(); }
     /// By corner: the first of its patches, whose tangents at (0,0) give the normal of all.
     std::span<std::uint32_t const> corner_owner() const { return corner_owner_; }
-    SymmetryReport const& symmetry() const { return symmetry_; }
 
 private:
     std::vector<PatchTypeTables> types_;
     std::vector<BasisPatch> patches_;
     std::vector<std::uint32_t> points_, corner_owner_;
-    SymmetryReport symmetry_;
 };
 
 } // namespace tessemu

@@ -40,65 +40,6 @@ public:
     std::string out;
 };
 
-class Reader {
-public:
-    explicit Reader(std::string_view bytes) : rest_(bytes) {}
-
-    std::uint64_t number(int bytes, std::uint64_t most = ~std::uint64_t(0))
-    {
-        check(rest_.size() >= std::size_t(bytes));
-        std::uint64_t out = 0;
-        for (int i = 0; i < bytes; ++i)
-            out |= std::uint64_t(static_cast<unsigned char>(rest_[std::size_t(i)])) << (8 * i);
-        rest_.remove_prefix(std::size_t(bytes));
-        check(out <= most);
-        return out;
-    }
-    float sharpness()
-    {
-        float const x = std::bit_cast<float>(std::uint32_t(number(4)));
-        check(x >= 0 && x <= kInfinitelySharp && !std::signbit(x));
-        return x;
-    }
-    std::vector<float> sharpnesses(std::size_t most)
-    {
-        std::vector<float> out(std::size_t(number(2, most)));
-        for (float& x : out) x = sharpness();
-        return out;
-    }
-    VertexRing ring()
-    {
-        VertexRing r;
-        r.closed = number(1, 1);
-        r.faces = std::uint16_t(number(2, PatchType::kMostFaces));
-        check(r.faces >= (r.closed ? 2 : 1));
-        r.position = std::uint16_t(number(2, r.closed ? 0 : r.faces - 1u));
-        r.vertex = sharpness();
-        r.edges = sharpnesses(r.edge_count());
-        check(r.edges.empty() || r.edges.size() == r.edge_count());
-        check(r.closed || r.edges.empty() ||
-              (r.edges[0] == kInfinitelySharp && r.edges.back() == kInfinitelySharp));
-        r.concave.resize(std::size_t(number(2, r.edge_count())));
-        for (std::uint16_t& edge : r.concave) edge = std::uint16_t(number(2, r.edge_count() - 1));
-        check(std::is_sorted(r.concave.begin(), r.concave.end()));
-        return r;
-    }
-    double fraction()
-    {
-        double const x = std::bit_cast<double>(number(8));
-        check(x >= 0 && x <= 1);
-        return x;
-    }
-    void end() { check(rest_.empty()); }
-    static void check(bool right)
-    {
-        if (!right) throw Error("these bytes are no patch type");
-    }
-
-private:
-    std::string_view rest_;
-};
-
 } // namespace
 
 std::string in_words(PatchFamily family)
@@ -224,23 +165,6 @@ std::string PatchType::bytes() const
     w.number(flatness.has_value(), 1);
     if (flatness) w.number(std::bit_cast<std::uint64_t>(*flatness), 8);
     return std::move(w.out);
-}
-
-PatchType PatchType::from_bytes(std::string_view bytes)
-{
-    Reader r(bytes);
-    PatchType out;
-    out.corner = r.ring();
-    for (auto& ring : out.beyond)
-        if (r.number(1, 1)) ring = r.ring();
-    out.crease_method = r.number(1, 1) ? CreaseMethod::Chaikin : CreaseMethod::Normal;
-    out.outer = r.sharpnesses(out.corner.edge_count());
-    Reader::check(out.outer.size() ==
-                  (out.crease_method == CreaseMethod::Chaikin ? out.corner.edge_count() : 0));
-    out.sectors = r.number(1, 1) ? SectorRules::Biermann : SectorRules::OpenSubdiv;
-    if (r.number(1, 1)) out.flatness = r.fraction();
-    r.end();
-    return out;
 }
 
 PatchType smooth_type(int faces)

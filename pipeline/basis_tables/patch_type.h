@@ -102,8 +102,6 @@ struct PatchType {
 
     /// Canonical, equal if and only if the types are.
     std::string bytes() const;
-    /// Throws Error for what bytes() cannot have made.
-    static PatchType from_bytes(std::string_view bytes);
 };
 
 /// Nothing is sharp.

@@ -8,6 +8,7 @@
 #include "tests/support/edges.h"
 #include "tests/support/files.h"
 #include "tests/support/printed.h"
+#include "tests/support/sanitized.h"
 
 #include <gtest/gtest.h>
 
@@ -17,18 +18,6 @@
 
 namespace tessemu {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kSlow = true;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr bool kSlow = true;
-#else
-constexpr bool kSlow = false;
-#endif
-#else
-constexpr bool kSlow = false;
-#endif
 
 SchemeOnMesh load(std::string const& model, std::string const& scheme = "gregory-stencil")
 {
@@ -42,8 +31,8 @@ void expect_closed(std::string const& model, std::string const& scheme = "gregor
     float const most = find_scheme(scheme).info().tessellator ? kMaxTessFactor : 32;
     ThreadPool const threads;
     for (Machine const& machine : test::contraction_policies())
-        for (float factor :
-             kSlow ? std::vector{1.0f, 4.0f, 7.3f} : std::vector{1.0f, 4.0f, 7.3f, 16.0f, 64.0f}) {
+        for (float factor : test::kSlow ? std::vector{1.0f, 4.0f, 7.3f}
+                                        : std::vector{1.0f, 4.0f, 7.3f, 16.0f, 64.0f}) {
             FrameSettings s;
             s.tess_factor = std::min(factor, most);
             s.machine = machine;

@@ -392,7 +392,9 @@ private:
             std::vector<std::uint32_t> const words = words_of(tables_, p, *frame);
             shown.words.insert(shown.words.end(), words.begin(), words.end());
         }
-        for (auto& [levels, patches] : by_grid) {
+        for (auto& by : by_grid) { // no binding: clang 14 captures none
+            GridLevels const& levels = by.first;
+            ShownPatches& patches = by.second;
             auto const shown = std::make_shared<ShownPatches>(std::move(patches));
             auto const grid = std::make_shared<PatchGrid const>(make_patch_grid(levels));
             list.memory.push_back(shown);
