@@ -94,7 +94,7 @@ TEST(BolzCracks, AreTheSharesOfThePage)
         SCOPED_TRACE(row[0] + ", " + row[1]);
         bool const is_noisy = row[0].starts_with("an ulp off");
         ParameterTexts const set{
-            {"tables", row[0].ends_with("enforced") ? "enforced" : "unenforced"},
+            {"tables", row[0].ends_with(", enforced") ? "enforced" : "unenforced"},
             {"order", row[1] == "global" ? "global" : "table"}};
         Cracked const ours[] = {cracked(golem, is_noisy, set),
                                 cracked(in_random_order(golem), is_noisy, set)};
