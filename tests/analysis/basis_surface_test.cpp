@@ -8,6 +8,7 @@
 #include "pipeline/mesh/biermann.h"
 #include "pipeline/mesh/catmull_clark.h"
 #include "tests/support/random_mesh.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -110,6 +111,7 @@ TEST(BasisSurface, IsTheLimitSurfaceOfTaggedMeshes)
 
 TEST(BasisSurface, IsTheLimitSurfaceOfBiermannsRules)
 {
+    if (test::kSlow) GTEST_SKIP() << "goes over the code that Bolz.IsTheLimitSurface... does";
     Worst worst;
     std::optional<double> const flatness[] = {{}, 0.0, 0.5, 1.0};
     for (std::uint32_t seed = 4; seed <= 9; ++seed)

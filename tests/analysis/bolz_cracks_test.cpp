@@ -6,6 +6,7 @@
 #include "pipeline/basis_tables/table_store.h"
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/printed.h"
+#include "tests/support/sanitized.h"
 
 #include <gtest/gtest.h>
 
@@ -87,6 +88,7 @@ Cracked cracked(ControlMesh const& mesh, bool is_noisy, ParameterTexts const& se
 
 TEST(BolzCracks, AreTheSharesOfThePage)
 {
+    if (test::kSlow) GTEST_SKIP() << "shares are those of any build; other tests run this code";
     ControlMesh const golem = load_model("golem").mesh;
     std::size_t compared = 0;
     for (auto const& row : test::table_of("docs/bolz03.md", "| tables | sums")) {

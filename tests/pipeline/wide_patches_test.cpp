@@ -69,8 +69,8 @@ TEST(WidePatches, SharedPointsHaveEqualBitsUnderEveryContraction)
                 }
             ++drawn;
         }
-    // Both Gregory forms, Stam, biseptic and tables, ACC where all faces are quads, and where nothing is wide Pm and,
-    // of triangles alone, Phong.
+    // Both Gregory forms, Stam, biseptic and tables, ACC where all faces are quads, and where
+    // nothing is wide Pm and, of triangles alone, Phong.
     EXPECT_EQ(drawn, 5 * 7 + 5 + 1 + 1);
 }
 

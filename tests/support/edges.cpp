@@ -2,6 +2,7 @@
 #include "tests/support/edges.h"
 
 #include "shaders_cpp/domain_edges.h"
+#include "tests/support/sanitized.h"
 
 #include <algorithm>
 #include <bit>
@@ -156,6 +157,7 @@ std::vector<Machine> contraction_policies(std::uint64_t seeds)
 {
     std::vector<Machine> out(2);
     out[1].contraction = Contraction::All;
+    if (kSlow) seeds = std::min<std::uint64_t>(seeds, 2);
     for (std::uint64_t seed = 1; seed <= seeds; ++seed)
         out.push_back({kNativeLanes, Contraction::Mixed, seed});
     return out;

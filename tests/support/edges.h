@@ -23,7 +23,8 @@ using ReplaceDomainShader = std::function<DomainShader(Draw const&)>;
 EdgeComparison compare_edges(PatchMesh const& patches, FrameSettings const& settings,
                              ThreadPool const& threads, ReplaceDomainShader const& replace = {});
 
-/// Machines of every contraction: none, all, mixed with the seeds 1 to `seeds`.
+/// Machines of every contraction: none, all, mixed with the seeds 1 to `seeds`; under a sanitizer
+/// at most with 1 and 2.
 std::vector<Machine> contraction_policies(std::uint64_t seeds = 10);
 
 } // namespace tessemu::test
