@@ -10,8 +10,8 @@
 // texture). Of buffers and textures memory sees every element once, and again the part of the
 // repeated reads that the cache has no room for.
 //
-// A hull shader's groups do not span patches, so lanes idle. How many, each draw of a frame says for
-// itself, for draws differ in control points; all else of a frame is costed as one draw.
+// A hull shader's groups do not span patches, so lanes idle. How many, each draw of a frame says
+// for itself, for draws differ in control points; all else of a frame is costed as one draw.
 //
 // GPUs whose shaders are assembly issue instructions of several components: products with the sums
 // that they feed, so many scalars at once, and one for each texel. Their fragments run in batches

@@ -55,8 +55,8 @@ public:
         std::vector<OnLine> points;
     };
     std::map<MeshLine, Line> const& lines() const { return lines_; }
-    /// What the patches call the edge that has the point inside (PatchKind::edges); empty where none
-    /// has a word for it, and at corners.
+    /// What the patches call the edge that has the point inside (PatchKind::edges); empty where
+    /// none has a word for it, and at corners.
     std::string const& edge_in_words(std::vector<SeenPoint> const& seen) const;
     std::uint32_t face_of_patch(std::uint32_t patch) const { return face_of_patch_[patch]; }
     /// Pieces of lines that one patch alone has, and that several have.

@@ -286,8 +286,8 @@ void set_picture(Job& job, PictureRequest const& o, SurfaceRequest const& surfac
 {
     SchemeInfo const info = surface.model.scheme->info();
     if (!info.tessellator && o.tess_edge.kind != AdaptiveFactors::Kind::None)
-        throw Error("--tess-edge: " + info.name + " has no tessellator that takes factors by edge; 'tessemu schemes' "
-                    "lists what it can be set to");
+        throw Error("--tess-edge: " + info.name + " has no tessellator that takes factors by edge; "
+                    "'tessemu schemes' lists what it can be set to");
     FrameSettings& f = job.frame;
     f.width = o.size.width;
     f.height = o.size.height;

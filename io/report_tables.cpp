@@ -27,8 +27,8 @@ std::string histogram(std::vector<std::pair<std::size_t, std::size_t>> const& en
     return out.empty() ? "-" : out;
 }
 
-// Lines of at most 100 characters, broken at blanks; the first after `head`, which is as wide as the
-// indent of the others.
+// Lines of at most 100 characters, broken at blanks; the first after `head`, which is as wide as
+// the indent of the others.
 std::string wrapped(std::string const& head, std::string_view text)
 {
     constexpr std::size_t kWidth = 100;

@@ -377,8 +377,8 @@ public:
         list.for_each_surface_draw([&](Draw& d) {
             DomainShader& shader = d.pipeline.domain_shader;
             if (!shader)
-                throw Error("normals of the displaced surface are differences between any points of "
-                            "a patch, and the scheme has points on a grid alone");
+                throw Error("normals of the displaced surface are differences between any points "
+                            "of a patch, and the scheme has points on a grid alone");
             shader = {
                 std::make_shared<DisplacedNormalProgram>(
                     shader, d.patches, Setting{mesh().base(), *settings.displacement, shared_}),

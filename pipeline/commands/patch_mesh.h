@@ -73,13 +73,13 @@ VertexSource positions_of(ControlMesh const& mesh);
 SkinBuffers skin_of(Pose const& pose);
 
 /// Where dispatches and draws find the drawn mesh's positions. Only the file's vertices are moved
-/// into the settings' pose, by a dispatch; the steps of subdivision, dispatches too, make all others
-/// of them.
+/// into the settings' pose, by a dispatch; the steps of subdivision, dispatches too, make all
+/// others of them.
 ///
 /// \param texels  at least so many vertices' room
 /// \param origin  taken off all positions before the first step
-/// \returns  the control mesh's own memory, without a command, where there is neither; else vertices
-///           of four floats each, texels
+/// \returns  the control mesh's own memory, without a command, where there is neither;
+///           else vertices of four floats each, texels
 VertexSource add_vertices(CommandList& list, RefinedMesh const& mesh,
                           SurfaceSettings const& settings, std::size_t texels = 0,
                           std::array<float, 3> const& origin = {});

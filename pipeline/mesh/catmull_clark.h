@@ -129,8 +129,8 @@ struct CatmullClark {
 /// \param first  of the mesh's vertices in the tables' vertex buffer; above 0 all faces are quads,
 ///               for a step has made them
 /// \returns  the mesh: face points, edge points by their EdgeNumbers, vertex points; quads face by
-///           face, each starting at its old vertex. Sums run in double and are rounded once. And the
-///           tables by which kernels make the same points.
+///           face, each starting at its old vertex. Sums run in double and are rounded once. And
+///           the tables by which kernels make the same points.
 RefinedStep catmull_clark_step(Topology const& topology, std::uint32_t first = 0);
 
 /// The step's faces and tags, without texture coordinates.

@@ -46,8 +46,9 @@ struct DartMasks {
     RingWeights position, even, odd;
 };
 
-/// By iteration of the transposed refinement, from the smooth vertex's masks. Exact but for rounding
-/// up to a hundred edges; beyond, the even tangent is not waited for: at 500 it is 1.5 degrees off.
+/// By iteration of the transposed refinement, from the smooth vertex's masks. Exact but for
+/// rounding up to a hundred edges; beyond, the even tangent is not waited for: at 500 it is 1.5
+/// degrees off.
 /// \cost  of order n^2, and up to 20,000 n
 template <class Masks>
 DartMasks dart_masks(std::size_t n, SectorRules rules = SectorRules::OpenSubdiv)
@@ -85,7 +86,8 @@ DartMasks dart_masks(std::size_t n, SectorRules rules = SectorRules::OpenSubdiv)
         add_row(1 + j, step.edge[j]);
         add_row(1 + n + j, step.face[j]);
     }
-    // Converges with the ratio of the first two eigenvalues, which is 1 - O(1/n^2) for the tangents.
+    // Converges with the ratio of the first two eigenvalues, which is 1 - O(1/n^2) for the
+    // tangents.
     constexpr int kMostSteps = 20000;
     auto const dominant = [&](RingWeights w, auto const& normalise) {
         normalise(w);

@@ -38,8 +38,8 @@ Placement::Placement(std::span<glm::dvec3 const> points)
     if (length(center) > kFar * diagonal) {
         double const step = std::ldexp(1.0, power ? exponent - 1 : exponent);
         // Values further off than a step, and not further from each other, are multiples of the
-        // last bit of the nearest to 0. So is the shift, and the differences are no larger than that
-        // value: exact. Nearer ones may have bits that a shift would push out.
+        // last bit of the nearest to 0. So is the shift, and the differences are no larger than
+        // that value: exact. Nearer ones may have bits that a shift would push out.
         for (int k = 0; k < 3; ++k)
             if (std::max(low[k], -high[k]) >= step)
                 shift_[k] = std::floor(center[k] / step + 0.5) * step;

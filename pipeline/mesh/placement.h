@@ -24,10 +24,10 @@ public:
     Placement() = default;
     /// Of a mesh in its file. One whose centre is further off than kFar diagonals of its bounding
     /// box is moved by a multiple of a power of two of at least the diagonal, along each axis on
-    /// which all of it is at least so far from 0; one whose diagonal is not 2^-kScale to 2^kScale is scaled into this range by a power of 2^(2 kScale), so that
-    /// files which differ by such a power give the same mesh, bit for bit; any other stays as it
-    /// is.
-    /// Throws Error for no points, and for a diagonal that is 0 or not kSmallest to kLargest.
+    /// which all of it is at least so far from 0; one whose diagonal is not 2^-kScale to 2^kScale
+    /// is scaled into this range by a power of 2^(2 kScale), so that files which differ by such a
+    /// power give the same mesh, bit for bit; any other stays as it is. Throws Error for no points,
+    /// and for a diagonal that is 0 or not kSmallest to kLargest.
     explicit Placement(std::span<glm::dvec3 const> points);
 
     static constexpr int kFar = 8, kScale = 20;

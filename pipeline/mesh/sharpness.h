@@ -96,8 +96,8 @@ class Sharpness {
 public:
     /// \param topology  outlives this. \cost  linear in the tags and, where there are some, in the
     ///                  corners of faces
-    /// \param is_cut    by vertex, of a mesh that is a piece of another: some of its faces are not in
-    ///                  the piece, so that the boundary there is none, and what is sharp there is
+    /// \param is_cut    by vertex, of a mesh that is a piece of another: some of its faces are
+    ///                  not in the piece, so that the boundary there is none, and what is sharp there is
     ///                  not known. Empty: no vertex. Outlives this.
     explicit Sharpness(Topology const& topology, std::span<char const> is_cut = {});
 

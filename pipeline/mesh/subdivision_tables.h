@@ -8,12 +8,12 @@
 //     edge point     mean of its four: end, face, other end, other face
 //     vertex point   its edges' far ends and its faces, in turn: e_0, F_0, e_1, F_1, ...
 //
-// A boundary edge, and any edge that stays sharp, has both its ends twice: their middle. A vertex on
-// a boundary or between two sharp edges has valence 1 and its two neighbours along them, one that
-// stays where it is valence 0 and none: these are LOOP10's encodings, and sharp tags fit them. What
-// does not fit is `blended`, as sums of weighted points: points between two rules where a sharpness
-// ends in this step, edge points at triangles to be smoothed, and by Biermann's rules those that lean
-// to an end and those that are flattened.
+// A boundary edge, and any edge that stays sharp, has both its ends twice: their middle. A vertex
+// on a boundary or between two sharp edges has valence 1 and its two neighbours along them, one
+// that stays where it is valence 0 and none: these are LOOP10's encodings, and sharp tags fit them.
+// What does not fit is `blended`, as sums of weighted points: points between two rules where a
+// sharpness ends in this step, edge points at triangles to be smoothed, and by Biermann's rules
+// those that lean to an end and those that are flattened.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -54,8 +54,8 @@ struct SubdivisionTables {
 /// \param first      of the old vertices in the buffer: 0, or an earlier step's first_face_point()
 /// \param only_quads leaves face_offset_valence out: all faces are quads
 /// \cost  linear in the corners of faces, and in the terms of blended points
-/// Throws LimitError for a buffer of more vectors than RWVectorBuffer::kMostVectors, which keeps all
-/// tables' entries below 2^31 too, and for a vertex of more than 46,340 faces, whose number the
+/// Throws LimitError for a buffer of more vectors than RWVectorBuffer::kMostVectors, which keeps
+/// all tables' entries below 2^31 too, and for a vertex of more than 46,340 faces, whose number the
 /// vertex kernel squares in 32 bits.
 SubdivisionTables catmull_clark_tables(Topology const& topology, Sharpness const& sharpness,
                                        std::uint32_t first, bool only_quads);

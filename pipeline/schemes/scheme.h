@@ -125,9 +125,9 @@ SchemeParameter const& sort_parameter();
 
 /// NAME, VALUE as a user wrote them.
 using ParameterTexts = std::vector<std::pair<std::string, std::string>>;
-/// The scheme's parameters, those not given at their defaults, where they have one; sort_parameter()
-/// where it is given.
-/// Throws Error that names the parameter, the value and what is allowed.
+/// The scheme's parameters, those not given at their defaults, where they have one;
+/// sort_parameter() where it is given. Throws Error that names the parameter, the value and what is
+/// allowed.
 Parameters resolve_parameters(SchemeInfo const& info, ParameterTexts const& given);
 
 /// A mesh under a scheme: what draws, checks and comparisons start from.
@@ -155,10 +155,10 @@ struct BuildOptions {
     BasisTableStore* tables = nullptr; ///< for schemes that use some
 };
 
-/// Joins vertices if asked to, makes the mesh a manifold, checks it, sorts and refines it as options
-/// and scheme ask, and builds. Throws MeshError for a mesh that the scheme does not take, or, if
-/// strict, that is no manifold, naming a face of the given mesh; LimitError; Error, also for a sort
-/// that is asked for where no step is taken.
+/// Joins vertices if asked to, makes the mesh a manifold, checks it, sorts and refines it as
+/// options and scheme ask, and builds. Throws MeshError for a mesh that the scheme does not take,
+/// or, if strict, that is no manifold, naming a face of the given mesh; LimitError; Error, also for
+/// a sort that is asked for where no step is taken.
 SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options = {});
 /// The mesh alone, refined as for the scheme, whether it takes it or not: `patches` is none.
 SchemeOnMesh refine_for_scheme(Scheme const& scheme, ControlMesh mesh,

@@ -32,8 +32,8 @@ struct PatchQuadVertexShader {
 
     float low = 0, high = 0; ///< coordinates at the quad's corners, in texels
 
-    /// Of the quad for 2^n segments, n = 0 to 5: so that fragments' centres are the centres of every
-    /// 2^(5-n)th texel (section 3).
+    /// Of the quad for 2^n segments, n = 0 to 5: so that fragments' centres are the centres of
+    /// every 2^(5-n)th texel (section 3).
     static PatchQuadVertexShader of_level(int n)
     {
         float const step = float(1 << (5 - n)) / 2; // 2^(4-n)

@@ -1,8 +1,8 @@
 // Sums of basis functions: tables times control points, BOLZ03 section 3 and figure 6.
 //
-// The tables of a patch type lie side by side in a texture, each of 33 x 33 texels, folded into rows
-// where they are wider than a texture may be. A fragment brings the texel that it stands for in the
-// first table; the others lie at constant offsets from it.
+// The tables of a patch type lie side by side in a texture, each of 33 x 33 texels, folded into
+// rows where they are wider than a texture may be. A fragment brings the texel that it stands for
+// in the first table; the others lie at constant offsets from it.
 //
 // Two orders. In one order for the whole mesh, patches that meet add the same products one after
 // the other, and get the same bits: a control point brings its table's offset, and two points share

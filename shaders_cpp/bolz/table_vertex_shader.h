@@ -1,6 +1,6 @@
-// The draw that shows the tessellated patches: an instance a patch, whose vertices are texels of the
-// targets that the two passes filled. Direct3D 11 cannot bind a texture as a vertex buffer, so the
-// vertex shader loads by SV_VertexID; the paper sent targets round through the CPU.
+// The draw that shows the tessellated patches: an instance a patch, whose vertices are texels of
+// the targets that the two passes filled. Direct3D 11 cannot bind a texture as a vertex buffer, so
+// the vertex shader loads by SV_VertexID; the paper sent targets round through the CPU.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -29,8 +29,8 @@ struct TablePatchWords {
 ///
 /// Points on a patch's edges have equal bits from both sides: texels are sums in one order. The
 /// normal at the patch's own corner is the corner's, at a pole that of the pole and along an edge
-/// between two vertices of one pole too. On an infinitely sharp edge each side has its own; where the surface
-/// is displaced such points move along the mean of both sides' unit normals.
+/// between two vertices of one pole too. On an infinitely sharp edge each side has its own; where
+/// the surface is displaced such points move along the mean of both sides' unit normals.
 ///
 /// \tparam Epilog  ProjectionEpilog or DisplacementEpilog
 template <class Epilog> struct TableVertexShader {

@@ -1,5 +1,5 @@
-// BOLZ03's numbers: instructions of the scheme's own pixel shaders, and what follows from them on the
-// GPU that the paper describes.
+// BOLZ03's numbers: instructions of the scheme's own pixel shaders, and what follows from them on
+// the GPU that the paper describes.
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/cost.h"
@@ -73,7 +73,8 @@ TEST(Bolz03Listing, NormalsShareAddressesAndRoundEveryProductOfTheCrossProduct)
         EXPECT_EQ(exact.code.tex, 2 * n);
         EXPECT_EQ(exact.code.mad, 2 * n);
         EXPECT_EQ(exact.code.mul, 2u);
-        // Four components at once, which addresses ask for, leave the cross product two differences.
+        // Four components at once, which addresses ask for, leave the cross product two
+        // differences.
         EXPECT_EQ(exact.code.instructions(), n / 2 + 4 * n + 4);
     }
 }

@@ -1,5 +1,5 @@
-// The scheme of tables on whole cages: the limit surface with all its tags, bit-exact edges, and the
-// cracks that other sums have.
+// The scheme of tables on whole cages: the limit surface with all its tags, bit-exact edges, and
+// the cracks that other sums have.
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/compare.h"

@@ -121,8 +121,8 @@ TEST(Cost, LanesBeyondAPatchsControlPointsIdle)
     EXPECT_DOUBLE_EQ(estimate_cost(m, s).seconds, 128);
 }
 
-// Patches of 16 control points leave half of 32 lanes idle, patches of 32 none; the mean of 24 would
-// say a quarter for both.
+// Patches of 16 control points leave half of 32 lanes idle, patches of 32 none; the mean of 24
+// would say a quarter for both.
 TEST(Cost, EachDrawOfAFrameHasItsOwnIdleLanes)
 {
     GpuModel m;

@@ -164,8 +164,8 @@ Agreement compare_with_samples(std::filesystem::path const& obj, std::filesystem
 
 // Samples are printed with 10 digits, in models of up to 10 diagonals from their origin: 5e-9. The
 // file with infinitely sharp darts is off by 1e-5 itself in the faces there, for OpenSubdiv takes a
-// smooth vertex's mask. Normals have 8 decimals, and at extraordinary vertices those of OpenSubdiv's patches
-// are off by up to 6e-6 (see limit_surface_test.cpp).
+// smooth vertex's mask. Normals have 8 decimals, and at extraordinary vertices those of
+// OpenSubdiv's patches are off by up to 6e-6 (see limit_surface_test.cpp).
 void expect_agreement(std::string const& name, Agreement const& a)
 {
     EXPECT_GT(a.compared, 100u);
@@ -207,8 +207,8 @@ INSTANTIATE_TEST_SUITE_P(Shared, SharedTaggedCage,
                                          "catmark_rook", "catmark_smoothtris0",
                                          "catmark_torus_creases0", "spot_control", "two_hole"));
 
-// Every point of a refined mesh against OpenSubdiv's, as sets: the orders differ. Both sum in double
-// means of a few points of up to 8, so they agree to some units of 2^-50; but for Chaikin's
+// Every point of a refined mesh against OpenSubdiv's, as sets: the orders differ. Both sum in
+// double means of a few points of up to 8, so they agree to some units of 2^-50; but for Chaikin's
 // sharpnesses, which are floats whose sums round in the order of a ring: 2^-24 of 2 units.
 class RefinedCage : public testing::TestWithParam<std::pair<std::string, int>> {};
 
@@ -296,9 +296,10 @@ TEST(TaggedLimit, DoesNotDependOnTheLevel)
     EXPECT_GT(normals, 10000u);
 }
 
-// By Biermann's rules too, with every flatness, and at vertices with 5 faces and more as well, whose
-// tangents are halved whatever the tags; but not on a crease beside one face, which has no second
-// tangent. Where a step flattens, weights add up to 5 in absolute value, and rounding with them.
+// By Biermann's rules too, with every flatness, and at vertices with 5 faces and more as well,
+// whose tangents are halved whatever the tags; but not on a crease beside one face, which has no
+// second tangent. Where a step flattens, weights add up to 5 in absolute value, and rounding with
+// them.
 TEST(TaggedLimit, OfBiermannsRulesDoesNotDependOnTheLevelEither)
 {
     std::size_t points = 0, normals = 0, concave = 0;

@@ -252,8 +252,8 @@ TEST(BiermannRules, AFlatnessOfOneFlattensInOneStep)
 
 // Explicit steps against the masks. Of up to 3 faces the second eigenvalue is at most 0.4521 (of a
 // convex corner's sine mode, [[gamma + c/8, h/8], [h/2, 1/4]] with c = cos(pi/3)): ten steps leave
-// 4e-4 of a ring of size 2 for the position, thirty (0.4521/0.5)^30 = 0.05 for the plane. A tip is a
-// cone: its ring has no plane to tend to.
+// 4e-4 of a ring of size 2 for the position, thirty (0.4521/0.5)^30 = 0.05 for the plane. A tip is
+// a cone: its ring has no plane to tend to.
 TEST(BiermannRules, StepsTendToTheLimitOfTheMasks)
 {
     std::mt19937 random(11);

@@ -164,7 +164,8 @@ struct Sampled {
     }
     Vec at(int x, int y) const { return samples[std::size_t(y * kSide + x)]; }
 
-    // The largest distance of a sample from the grid's triangles, or 0 where all are within `limit`.
+    // The largest distance of a sample from the grid's triangles, or 0 where all are within
+    // `limit`.
     double beyond(GridLevels const& levels, double limit) const
     {
         PatchGrid const grid = make_patch_grid(levels);

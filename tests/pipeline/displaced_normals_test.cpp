@@ -97,7 +97,8 @@ TEST(DisplacedNormals, PatchesAgreeBitForBitUnderEveryContraction)
 }
 
 // Control points on z = c (x^2 + y^2) give the bicubic B-spline z = c (x^2 + y^2) + 2c/3, whose
-// constant no normal sees, and a ramp is linear between its texels' centres: p = S + h N in closed form.
+// constant no normal sees, and a ramp is linear between its texels' centres: p = S + h N in closed
+// form.
 TEST(DisplacedNormals, OfABowlUnderARampAreTheCrossProductOfItsDifferences)
 {
     constexpr std::uint32_t kFaces = 8;

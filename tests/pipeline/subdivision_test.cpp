@@ -235,11 +235,11 @@ std::vector<std::pair<std::string, ControlMesh>> cages()
 
 // With u = 2^-24 and M the largest coordinate. All weights are positive and add up to 1, so a step
 // hands its inputs' errors on at most. A face's mean of m points rounds m - 1 sums, a weight and a
-// product; an edge point 3 sums; a vertex point 2n - 1 sums, two products, two weights and a sum: at
-// most (2 n + 4) u M with n the most edges or sides. Blended weights may be as large as 4/3 and
-// below 0 beside it (Chaikin), 5/3 in absolute sum; each of at most 2 n + 1 terms rounds its weight,
-// its product and a sum, and multiplies its inputs' errors by 5/3. The references round as much in
-// double.
+// product; an edge point 3 sums; a vertex point 2n - 1 sums, two products, two weights and a sum:
+// at most (2 n + 4) u M with n the most edges or sides. Blended weights may be as large as 4/3 and
+// below 0 beside it (Chaikin), 5/3 in absolute sum; each of at most 2 n + 1 terms rounds its
+// weight, its product and a sum, and multiplies its inputs' errors by 5/3. The references round as
+// much in double.
 TEST(SubdivisionKernels, AgreeWithTheMasksWithinRounding)
 {
     bool rounds = false;

@@ -1,5 +1,5 @@
-// biseptic: patches of degree 7 that meet with one curvature at an extraordinary vertex, LOOP10 4.3.
-// The basis is derived, not the one that Loop and Schaefer published (basis.h).
+// biseptic: patches of degree 7 that meet with one curvature at an extraordinary vertex, LOOP10
+// 4.3. The basis is derived, not the one that Loop and Schaefer published (basis.h).
 //
 // edges=paper evaluates each patch alone; edges=shared gives shared points equal bits
 // (docs/biseptic.md).
@@ -15,8 +15,8 @@ namespace tessemu {
 
 namespace {
 
-// Weights of a net's points as a row of a patch's inputs. Of an input that is two of its points both
-// weights are added in ascending order, which no patch's numbers change.
+// Weights of a net's points as a row of a patch's inputs. Of an input that is two of its points
+// both weights are added in ascending order, which no patch's numbers change.
 StencilRow row_of(std::vector<std::pair<int, double>> terms, int inputs)
 {
     std::sort(terms.begin(), terms.end());

@@ -128,8 +128,8 @@ FromEdge from_edge(int edge, int segments, int x, int y)
 
 std::vector<glm::dvec2> chart_of(PatchType const& type, std::span<std::uint16_t const> beyond)
 {
-    // With lambda the eigenvalue of the ring of edges at (cos, sin) j theta, C = cos(theta/2): a face
-    // between two edges lies at 4/(C + sqrt(C^2 + 4)), and the points beyond follow from
+    // With lambda the eigenvalue of the ring of edges at (cos, sin) j theta, C = cos(theta/2): a
+    // face between two edges lies at 4/(C + sqrt(C^2 + 4)), and the points beyond follow from
     // lambda X = the rule of X's vertex or edge.
     VertexRing const& ring = type.corner;
     auto const [turns, parts] = angle_of(ring);

@@ -1,13 +1,13 @@
 // How far a patch's surface lies from its triangles: an upper bound from its control points.
 //
-// A sample S(q) = sum_i b_i(q) P_i is compared with the point T = sum_j w_j S(q_j) of a triangle whose
-// corners are the vertices q_j: their difference is sum_i delta_i(q) P_i with
+// A sample S(q) = sum_i b_i(q) P_i is compared with the point T = sum_j w_j S(q_j) of a triangle
+// whose corners are the vertices q_j: their difference is sum_i delta_i(q) P_i with
 //
 //     delta_i(q) = b_i(q) - sum_j w_j b_i(q_j),      sum_i delta_i(q) = 0.
 //
-// Control points are a flat net, an affine image of the type's chart (x_i, y_i) in the plane, and what
-// is left of them, their discrete curvature: P_i = C + x_i A + y_i B + R_i. So, the maxima running
-// over some samples q,
+// Control points are a flat net, an affine image of the type's chart (x_i, y_i) in the plane, and
+// what is left of them, their discrete curvature: P_i = C + x_i A + y_i B + R_i. So, the maxima
+// running over some samples q,
 //
 //     |S(q) - T| <= |A| max |sum_i delta_i(q) x_i| + |B| max |sum_i delta_i(q) y_i|
 //                   + sum_i |R_i| max |delta_i(q)|

@@ -82,8 +82,8 @@ private:
                 add({x, y}, {x + 1, y + 1}, {x, y + 1});
             }
     }
-    // From edge k, with a point at every 2^coarser-th place, to the row inside; on goes whichever of
-    // both has its next segment's middle first.
+    // From edge k, with a point at every 2^coarser-th place, to the row inside; on goes whichever
+    // of both has its next segment's middle first.
     void zip(int k, int coarser)
     {
         int const step = 1 << coarser;
