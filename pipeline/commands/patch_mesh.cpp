@@ -76,7 +76,8 @@ std::span<float const> add_pole_normals(CommandList& list, Poles const& poles,
     list.memory.push_back(normals);
     PoleNormalShader cs;
     cs.first = {poles.first, 0, "pole_starts"};
-    cs.faces = {{poles.faces.data()->data(), 4 * poles.faces.size()}, 1, "pole_faces"};
+    std::uint32_t const* const faces = poles.faces.empty() ? nullptr : poles.faces.front().data();
+    cs.faces = {{faces, 4 * poles.faces.size()}, 1, "pole_faces"};
     cs.positions = {positions.floats, 2, "positions"};
     cs.normals = {*normals, 3, "pole_normals"};
     cs.stride = positions.stride;
