@@ -25,27 +25,12 @@ SchemeOnMesh adaptive(ControlMesh mesh, std::string const& distance, int subdivi
                         {.subdivide = subdivide, .set = {{"adapt", distance}}});
 }
 
-// A crease that ends, a semi-sharp one, a corner.
-ControlMesh tagged_cube()
-{
-    ControlMesh cube = test::cube().mesh;
-    auto const crease = [&](std::size_t corner, float sharpness) {
-        cube.creases.push_back(
-            {cube.face_vertices[corner], cube.face_vertices[corner + 1], sharpness});
-    };
-    crease(0, kInfinitelySharp);
-    crease(1, kInfinitelySharp);
-    crease(2, 2.5f);
-    cube.corners.push_back({cube.face_vertices[3], kInfinitelySharp});
-    return cube;
-}
-
 std::map<std::string, ControlMesh> cages()
 {
     std::map<std::string, ControlMesh> out;
     for (char const* name : {"golem", "jug"}) out.emplace(name, load_model(name).mesh);
     out.emplace("torus", test::torus(8, 5).mesh);
-    out.emplace("tagged cube", tagged_cube());
+    out.emplace("tagged cube", test::tagged_cube());
     return out;
 }
 
@@ -150,12 +135,12 @@ TEST(BolzAdaptive, LevelsAreOfTheMeshAtRestAndOfNoTessFactor)
 
 TEST(BolzAdaptive, WarnsWhereTheTablesEndBeforeTheDistance)
 {
-    SchemeOnMesh const near = adaptive(tagged_cube(), "1e-9");
+    SchemeOnMesh const near = adaptive(test::tagged_cube(), "1e-9");
     ASSERT_FALSE(near.warnings.empty());
     EXPECT_NE(near.warnings.back().find("single precision"), std::string::npos);
     // A sharp bend on patches that are large.
     std::string said;
-    for (std::string const& w : adaptive(tagged_cube(), "2e-5").warnings) said += w;
+    for (std::string const& w : adaptive(test::tagged_cube(), "2e-5").warnings) said += w;
     EXPECT_NE(said.find("--subdivide"), std::string::npos) << said;
     EXPECT_NE(said.find("adapt=2e-05: "), std::string::npos) << said;
     for (std::string const& w : adaptive(load_model("golem").mesh, "1e-2").warnings)

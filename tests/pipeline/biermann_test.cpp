@@ -11,6 +11,7 @@
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/files.h"
 #include "tests/support/gzip.h"
+#include "tests/support/point_sets.h"
 #include "tests/support/random_mesh.h"
 
 #include <gtest/gtest.h>
@@ -51,25 +52,6 @@ ControlMesh mesh_of(nlohmann::json const& g)
     return m;
 }
 
-// Sets of points compared by place, for the orders differ.
-double worst_distance(std::span<Vec const> ours, nlohmann::json const& theirs)
-{
-    EXPECT_EQ(ours.size(), theirs.size());
-    double worst = 0;
-    std::vector<char> taken(ours.size());
-    for (auto const& p : theirs) {
-        Vec const q(p[0], p[1], p[2]);
-        std::size_t nearest = 0;
-        for (std::size_t i = 1; i < ours.size(); ++i)
-            if (!taken[i] &&
-                (taken[nearest] || glm::length(ours[i] - q) < glm::length(ours[nearest] - q)))
-                nearest = i;
-        taken[nearest] = 1;
-        worst = std::max(worst, glm::length(ours[nearest] - q));
-    }
-    return worst;
-}
-
 // Data of magnitude about 1, means of up to 25 points: the golden data's own 1e-12.
 TEST(BiermannRules, StepsAgreeWithGoldenDataInDouble)
 {
@@ -82,7 +64,7 @@ TEST(BiermannRules, StepsAgreeWithGoldenDataInDouble)
             Topology const topology(mesh);
             Sharpness const sharpness(topology);
             x = refined_points<CatmullClark, Vec>(topology, sharpness, x);
-            EXPECT_LE(worst_distance(x, g[level]), 1e-12) << level;
+            EXPECT_LE(test::worst_distance(x, g[level]), 1e-12) << level;
             ControlMesh fine = catmull_clark_mesh(topology, sharpness, x);
             EXPECT_EQ(fine.concave.size(), mesh.concave.size());
             mesh = std::move(fine);

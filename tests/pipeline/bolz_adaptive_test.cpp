@@ -353,28 +353,13 @@ Model refined(std::string const& name, ControlMesh mesh, int steps)
     return {name, std::make_shared<RefinedMesh const>(std::move(mesh), steps, catmull_clark_step)};
 }
 
-// A crease that ends, a semi-sharp one, a corner.
-ControlMesh tagged_cube()
-{
-    ControlMesh cube = test::cube().mesh;
-    auto const crease = [&](std::size_t corner, float sharpness) {
-        cube.creases.push_back(
-            {cube.face_vertices[corner], cube.face_vertices[corner + 1], sharpness});
-    };
-    crease(0, kInfinitelySharp);
-    crease(1, kInfinitelySharp);
-    crease(2, 2.5f);
-    cube.corners.push_back({cube.face_vertices[3], kInfinitelySharp});
-    return cube;
-}
-
 std::vector<Model> models()
 {
     std::vector<Model> out;
     out.push_back(refined("golem", load_model("golem").mesh, 2));
     out.push_back(refined("jug", load_model("jug").mesh, 2));
     out.push_back(refined("torus", test::torus(8, 5).mesh, 1));
-    out.push_back(refined("tagged cube", tagged_cube(), 2));
+    out.push_back(refined("tagged cube", test::tagged_cube(), 2));
     return out;
 }
 
@@ -382,7 +367,7 @@ std::vector<Model> models()
 std::vector<Model> models_of_other_rules()
 {
     std::vector<Model> out;
-    ControlMesh chaikin = tagged_cube(), biermann = tagged_cube();
+    ControlMesh chaikin = test::tagged_cube(), biermann = test::tagged_cube();
     chaikin.rules.crease_method = CreaseMethod::Chaikin;
     out.push_back(refined("by Chaikin's rule", std::move(chaikin), 2));
     biermann.creases.pop_back(); // no finite sharpness

@@ -11,6 +11,7 @@
 #include "tests/support/files.h"
 #include "tests/support/gzip.h"
 #include "tests/support/machines.h"
+#include "tests/support/point_sets.h"
 #include "tests/support/random_mesh.h"
 
 #include <gtest/gtest.h>
@@ -178,25 +179,6 @@ ControlMesh mesh_of(nlohmann::json const& g)
     return m;
 }
 
-// Sets of points compared by place: the files number edges from corner k to corner k + 1.
-double worst_distance(std::span<Vec const> ours, nlohmann::json const& theirs)
-{
-    EXPECT_EQ(ours.size(), theirs.size());
-    double worst = 0;
-    std::vector<char> taken(ours.size());
-    for (auto const& p : theirs) {
-        Vec const q(p[0], p[1], p[2]);
-        std::size_t nearest = 0;
-        for (std::size_t i = 1; i < ours.size(); ++i)
-            if (!taken[i] &&
-                (taken[nearest] || glm::length(ours[i] - q) < glm::length(ours[nearest] - q)))
-                nearest = i;
-        taken[nearest] = 1;
-        worst = std::max(worst, glm::length(ours[nearest] - q));
-    }
-    return worst;
-}
-
 // Data of magnitude about 1, means of up to 25 points: the golden data's own 1e-12.
 TEST(SubdivisionKernels, AgreeWithGoldenDataInDouble)
 {
@@ -208,12 +190,12 @@ TEST(SubdivisionKernels, AgreeWithGoldenDataInDouble)
         RefinedMesh const refined(mesh_of(g), 2, catmull_clark_step);
         std::size_t first = refined.tables()[0].first_face_point();
         run_in_double(refined.tables()[0], x);
-        EXPECT_LE(worst_distance(std::span(x).subspan(first), g["level1_verts"]), 1e-12);
+        EXPECT_LE(test::worst_distance(std::span(x).subspan(first), g["level1_verts"]), 1e-12);
         if (!g.contains("level2_verts")) continue; // of large meshes
         ++second;
         first = refined.tables()[1].first_face_point();
         run_in_double(refined.tables()[1], x);
-        EXPECT_LE(worst_distance(std::span(x).subspan(first), g["level2_verts"]), 1e-12);
+        EXPECT_LE(test::worst_distance(std::span(x).subspan(first), g["level2_verts"]), 1e-12);
     }
     EXPECT_EQ(golden().size(), 23u);
     EXPECT_GE(second, 10u);

@@ -71,6 +71,20 @@ Shape cube()
     return s;
 }
 
+ControlMesh tagged_cube()
+{
+    ControlMesh out = cube().mesh;
+    auto const crease = [&](std::size_t corner, float sharpness) {
+        out.creases.push_back(
+            {out.face_vertices[corner], out.face_vertices[corner + 1], sharpness});
+    };
+    crease(0, kInfinitelySharp);
+    crease(1, kInfinitelySharp);
+    crease(2, 2.5f);
+    out.corners.push_back({out.face_vertices[3], kInfinitelySharp});
+    return out;
+}
+
 Shape uv_sphere(int segments, int rings)
 {
     Shape s{"UV sphere", {}};

@@ -20,6 +20,8 @@ struct Shape {
 Shape plane();
 Shape grid(int across, int along);
 Shape cube();
+/// The cube with a crease that ends, a semi-sharp one and a corner.
+ControlMesh tagged_cube();
 /// Triangles around the poles, quads between them.
 Shape uv_sphere(int segments, int rings);
 /// Triangles; each of an icosahedron's split `levels` times.
