@@ -10,49 +10,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pipeline/basis_tables/generator.h"
+#include "pipeline/basis_tables/joints.h"
 
-#include <array>
 #include <span>
 
 namespace tessemu {
-
-/// Tables of one patch type in single precision.
-struct PatchTypeTables {
-    PatchType type;
-    int points = 0; ///< control points, each a vertex of its own
-    /// Of each control point of BasisTables, in its order: which of these it is. In tiny meshes two
-    /// of them may be one vertex.
-    std::vector<std::uint16_t> point_of;
-    std::vector<std::uint16_t> beyond; ///< as BasisTables has it
-    /// As BasisTables has them; of control points that are one vertex their sums.
-    std::vector<float> position, du, dv;
-};
-/// \param point_of  empty: each is one of its own
-PatchTypeTables in_single_precision(PatchType const& type, BasisTables const& tables,
-                                    std::vector<std::uint16_t> point_of = {});
-
-/// v = 0, u = 1, v = 1 and u = 0, each followed away from the patch's corner or the edges at it:
-/// Lower and Left from (0,0), Right from (1,0), Upper from (0,1).
-enum class PatchSide : std::uint8_t { Lower, Right, Upper, Left };
-
-/// Sides of two types, by number, that are one: Lower of a with Left of b, or Right of a with Upper
-/// of b.
-struct Joint {
-    std::uint32_t a;
-    PatchSide side; ///< of a: Lower or Right
-    std::uint32_t b;
-    bool mirrored = false; ///< b is a's mirror image, or its own: not a neighbour
-
-    auto operator<=>(Joint const&) const = default;
-};
-
-/// Of a joint: control points of a and of b that are one.
-using JointPoints = std::vector<std::array<std::uint16_t, 2>>;
-
-/// What the types of one set of rules can share with each other, and with their mirror images; of
-/// types that nothing beyond has an influence on, and without finite sharpness.
-std::vector<Joint> possible_joints(std::span<PatchTypeTables const> types);
 
 struct SymmetryReport {
     std::size_t joints = 0;

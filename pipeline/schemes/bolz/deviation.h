@@ -41,7 +41,7 @@ std::vector<glm::dvec2> chart_of(PatchType const& type, std::span<std::uint16_t 
 /// The bounds of a patch type.
 class PatchDeviation {
 public:
-    static constexpr int kMostLevel = 5;
+    static constexpr int kMostLevel = kTableSteps;
     /// Samples that bounds are for: twice as fine as the finest grid, so that it has a bound too.
     static constexpr int kSampleLevel = kMostLevel + 1;
 
