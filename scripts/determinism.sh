@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
-# Builds the program with g++ and clang at -O0 and -O2 and compares the hashes of what it gives:
-# five cages drawn and exported by the default scheme with -j 1, 2, 3, 8, each with lanes 4, 8, 16;
-# every scheme on a closed cage that it takes, displaced, animated, with adaptive factors, by the
-# Direct3D 10 path and compared with the limit surface, with three pairs of threads and lanes.
+# Compares the hashes of what the program gives in several builds: five cages drawn and exported by
+# the default scheme, every scheme on a closed cage that it takes, displaced, animated, with adaptive
+# factors, by the Direct3D 10 path and compared with the limit surface.
+#   determinism.sh            builds with g++ and clang at -O0 and -O2; the five cages with -j 1, 2, 3,
+#                             8, each with lanes 4, 8, 16, the rest with three pairs of both
+#   determinism.sh FOLDER...  these builds as they are, everything with the three pairs; of a build
+#                             with one width of lanes only that
 # Exit 1 if any differ or a run gives none. Blending, stencil and stream output are in a hash that
 # the test Determinism.R1SamplesBlendingAndStreamOutputHaveOneHash compares in every preset.
 set -euo pipefail
@@ -50,66 +53,97 @@ check() { # key, hash, what
     fi
 }
 
-for compiler in g++ clang++; do
-    for level in O0 O2; do
-        folder=build/determinism/$compiler-$level
-        cmake -S . -B "$folder" -G Ninja -DCMAKE_CXX_COMPILER=$compiler -DCMAKE_BUILD_TYPE= \
-            -DCMAKE_CXX_FLAGS="-$level -march=native" -DTESSEMU_ALL_LANES=ON \
-            -DTESSEMU_BUILD_TESTS=OFF -DTESSEMU_BUILD_BENCH=OFF >/dev/null
-        cmake --build "$folder" --target tessemu_program
-        for model in "${models[@]}"; do
-            for threads in 1 2 3 8; do
-                for lanes in 4 8 16; do
-                    what="$compiler -$level -j $threads --lanes $lanes"
-                    options="--tess 5.3 -j $threads --lanes $lanes --json -"
-                    for contraction in none all mixed:7; do
-                        check "draw $model $contraction" "$("$folder/tessemu" draw "$model" \
-                            --size 200x150 --contraction $contraction $options 2>/dev/null |
-                            hash_of)" "$what"
-                    done
-                    check "draw $model 4 samples, wire" "$("$folder/tessemu" draw "$model" \
-                        --size 200x150 --samples 4 --view wire $options 2>/dev/null |
-                        hash_of)" "$what"
-                    check "export $model" "$("$folder/tessemu" export "$model" $options \
-                        -o "$folder/mesh.ply" 2>/dev/null | hash_of)" "$what"
-                    for steps in "--levels 3" "--levels 2 --set sort=valence --contraction mixed:7"; do
-                        check "subdivide $model $steps" "$("$folder/tessemu" subdivide "$model" $steps \
-                            -j $threads --lanes $lanes --json - 2>/dev/null | hash_of)" "$what"
-                    done
-                done
-            done
+lanes_of() { # folder: the widths that its program holds
+    local lanes
+    for lanes in 4 8 16; do
+        "$1/tessemu" draw jug --size 16x16 --lanes "$lanes" --json - >/dev/null 2>&1 && echo "$lanes"
+    done
+    return 0
+}
+
+run_cages() { # folder, threads, lanes
+    local folder=$1 what="$1 -j $2 --lanes $3"
+    local options="--tess 5.3 -j $2 --lanes $3 --json -"
+    for model in "${models[@]}"; do
+        for contraction in none all mixed:7; do
+            check "draw $model $contraction" "$("$folder/tessemu" draw "$model" \
+                --size 200x150 --contraction $contraction $options 2>/dev/null | hash_of)" "$what"
         done
-        # The golem is quads with texture coordinates, the spindle triangles without: no image can
-        # displace it, and the error view has no quads to compare.
-        for scheme in gregory-stencil gregory-two-stage acc pm phong stam biseptic; do
-            cage=golem
-            variants=("--contraction none" "--contraction mixed:5" "--tess-edge pixels=6"
-                "--displace studs --animate sway --phase 0.3 --contraction mixed:5" "--direct3d 10")
-            if [ "$scheme" = phong ]; then
-                cage=spindle
-            else
-                variants+=("--displace docs/images/roofline.png --contraction all"
-                    "--view error --level 3")
-            fi
-            if [ "$scheme" = stam ] || [ "$scheme" = biseptic ]; then
-                variants+=("--view curvature" "--set edges=shared --contraction mixed:5"
-                    "--set edges=shared --set regular=bspline --view curvature")
-            fi
-            variants+=("--view zebra")
-            for run in "1 4" "3 8" "8 16"; do
-                read -r threads lanes <<<"$run"
-                what="$compiler -$level -j $threads --lanes $lanes"
-                options="--scheme $scheme -j $threads --lanes $lanes --json -"
-                for variant in "${variants[@]}"; do
-                    check "draw $cage $scheme $variant" "$("$folder/tessemu" draw $cage $options \
-                        --size 200x150 --tess 5.3 $variant 2>/dev/null | hash_of)" "$what"
-                done
-                check "compare $cage $scheme" "$("$folder/tessemu" compare $cage $options \
-                    --level 3 2>/dev/null | hash_of)" "$what"
-            done
+        check "draw $model 4 samples, wire" "$("$folder/tessemu" draw "$model" \
+            --size 200x150 --samples 4 --view wire $options 2>/dev/null | hash_of)" "$what"
+        check "export $model" "$("$folder/tessemu" export "$model" $options \
+            -o "$folder/mesh.ply" 2>/dev/null | hash_of)" "$what"
+        for steps in "--levels 3" "--levels 2 --set sort=valence --contraction mixed:7"; do
+            check "subdivide $model $steps" "$("$folder/tessemu" subdivide "$model" $steps \
+                -j $2 --lanes $3 --json - 2>/dev/null | hash_of)" "$what"
         done
     done
-done
+}
+
+run_schemes() { # folder, threads, lanes
+    local folder=$1 what="$1 -j $2 --lanes $3"
+    # The golem is quads with texture coordinates, the spindle triangles without: no image can
+    # displace it, and the error view has no quads to compare. Tables that another build left in the
+    # cache would be compared with themselves.
+    for scheme in gregory-stencil gregory-two-stage acc pm phong stam biseptic bolz; do
+        local cage=golem options="--scheme $scheme -j $2 --lanes $3 --table-cache none --json -"
+        local variants=("--contraction none" "--contraction mixed:5" "--view zebra"
+            "--displace studs --animate sway --phase 0.3 --contraction mixed:5")
+        case $scheme in
+        phong) cage=spindle ;;
+        *) variants+=("--displace docs/images/roofline.png --contraction all" "--view error --level 3") ;;
+        esac
+        case $scheme in
+        bolz) variants+=("--set adapt=1e-3 --contraction mixed:5" "--set order=table"
+            "--set rules=biermann" "--set tables=unenforced") ;;
+        *) variants+=("--tess-edge pixels=6" "--direct3d 10") ;;
+        esac
+        case $scheme in
+        stam | biseptic) variants+=("--view curvature" "--set edges=shared --contraction mixed:5"
+            "--set edges=shared --set regular=bspline --view curvature") ;;
+        esac
+        for variant in "${variants[@]}"; do
+            check "draw $cage $scheme $variant" "$("$folder/tessemu" draw $cage $options \
+                --size 200x150 --tess 5.3 $variant 2>/dev/null | hash_of)" "$what"
+        done
+        check "compare $cage $scheme" "$("$folder/tessemu" compare $cage $options \
+            --level 3 2>/dev/null | hash_of)" "$what"
+    done
+}
+
+compare_build() { # folder, whether the five cages run with every pair
+    local widths run threads lanes
+    widths=$(lanes_of "$1")
+    for run in "1 4" "3 8" "8 16"; do
+        read -r threads lanes <<<"$run"
+        grep -qx "$lanes" <<<"$widths" || continue
+        run_schemes "$1" "$threads" "$lanes"
+        [ "$2" = all ] || run_cages "$1" "$threads" "$lanes"
+    done
+    [ "$2" = all ] || return 0
+    for threads in 1 2 3 8; do
+        for lanes in $widths; do
+            run_cages "$1" "$threads" "$lanes"
+        done
+    done
+}
+
+if [ $# -gt 0 ]; then
+    for folder in "$@"; do
+        compare_build "$folder" pairs
+    done
+else
+    for compiler in g++ clang++; do
+        for level in O0 O2; do
+            folder=build/determinism/$compiler-$level
+            cmake -S . -B "$folder" -G Ninja -DCMAKE_CXX_COMPILER=$compiler -DCMAKE_BUILD_TYPE= \
+                -DCMAKE_CXX_FLAGS="-$level -march=native" -DTESSEMU_ALL_LANES=ON \
+                -DTESSEMU_BUILD_TESTS=OFF -DTESSEMU_BUILD_BENCH=OFF >/dev/null
+            cmake --build "$folder" --target tessemu_program
+            compare_build "$folder" all
+        done
+    done
+fi
 for key in "${!expected[@]}"; do echo "${expected[$key]:0:16}  $key"; done | sort -k2
 echo "$runs runs, $failures differ or fail"
 [ "$failures" -eq 0 ]

@@ -200,7 +200,7 @@ TEST(BasisSurface, HasEqualBitsWherePatchesMeetWithEnforcedTablesInOneOrder)
         sum.positions += s.positions, sum.tangents += s.tangents;
         sum.positions_differ += s.positions_differ, sum.tangents_differ += s.tangents_differ;
     };
-    for (std::uint32_t seed : {5u, 7u, 20u})
+    for (std::uint32_t seed : test::kSlow ? std::vector{5u} : std::vector{5u, 7u, 20u})
         for (int rules = 0; rules < 4; ++rules) {
             ControlMesh mesh = test::with_random_tags(test::random_mesh(seed), seed);
             if (rules > 0) mesh = by_biermann(std::move(mesh), flatness[rules - 1]);
@@ -217,8 +217,8 @@ TEST(BasisSurface, HasEqualBitsWherePatchesMeetWithEnforcedTablesInOneOrder)
                 shared_sides(refined, MeshBasis(refined, &again, {.enforced = false}), true));
             add(unordered, shared_sides(refined, basis, false));
         }
-    EXPECT_GT(all.positions, 100000u);
-    EXPECT_GT(all.tangents, 100000u);
+    EXPECT_GT(all.positions, 30000u);
+    EXPECT_GT(all.tangents, 30000u);
     for (Shared const& s : {unenforced, unordered}) {
         EXPECT_GT(s.positions_differ, s.positions / 2);
         EXPECT_GT(s.tangents_differ, s.tangents / 2);

@@ -10,6 +10,7 @@
 #include "pipeline/mesh/catmull_clark.h"
 #include "tests/support/files.h"
 #include "tests/support/printed.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -414,9 +415,7 @@ TEST(Loop10Figure5, APanelForEachModelAndGpuAndAllClaims)
 // Every verdict, and every number as the rounded one of some that the program prints.
 TEST(Loop10Figure5, ThePagesTableIsWhatTheProgramGives)
 {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "672 frames: too many for instrumented code";
-#endif
+    if (test::kSlow) GTEST_SKIP() << "672 frames: too many for instrumented code";
     std::vector<ControlMesh> meshes;
     for (Loop10Model const& m : kLoop10Models) {
         std::string const file = std::string("models/") + m.ours + ".obj";

@@ -8,6 +8,7 @@
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/cages.h"
 #include "tests/support/files.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/shapes.h"
 #include "tests/support/stencil_patch.h"
 
@@ -614,11 +615,7 @@ TEST_P(OnModels, GregorySchemesPassUnderAHundredContractions)
         Case c(test::shared(file).string(), scheme);
         c.settings.frame.tess_factor = 3.4f;
         c.settings.rays = 2000;
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-        int const seeds = 2;
-#else
-        int const seeds = 100;
-#endif
+        int const seeds = test::kSlow ? 2 : 100;
         expect_clean(c.check(), std::string(scheme) + " on " + GetParam());
         c.settings.rays = 0;
         c.settings.frame.machine.contraction = Contraction::Mixed;

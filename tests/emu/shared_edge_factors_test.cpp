@@ -4,6 +4,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/parallel.h"
 #include "emu/tessellator.h"
+#include "tests/support/sanitized.h"
 
 #include <gtest/gtest.h>
 
@@ -13,17 +14,7 @@
 namespace tessemu {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::uint32_t kStep = 499;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr std::uint32_t kStep = 499;
-#else
-constexpr std::uint32_t kStep = 1;
-#endif
-#else
-constexpr std::uint32_t kStep = 1;
-#endif
+constexpr std::uint32_t kStep = test::kSlow ? 499 : 1;
 
 TessellatedPatch tessellated(TessellatorState const& state, TessFactors const& f)
 {

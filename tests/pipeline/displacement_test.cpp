@@ -23,11 +23,12 @@ void expect_closed_displaced(std::string const& model, std::string const& scheme
         std::make_shared<Displacement>(Displacement::studs(0.1f, 0.05f)),
         std::make_shared<Displacement>(m.mesh->base_topology(), image, 0.05f)};
     for (Machine const& machine : test::contraction_policies())
-        for (auto const& map : maps) {
+        for (std::size_t i = 0; i < std::size(maps); ++i) {
+            if (!test::meets_case(machine, i, std::size(maps))) continue;
             FrameSettings s;
             s.tess_factor = 7.3f;
             s.machine = machine;
-            s.displacement = map;
+            s.displacement = maps[i];
             test::EdgeComparison const c = test::compare_edges(*m.patches, s, ThreadPool());
             ASSERT_GT(c.shared_points, 100u);
             ASSERT_EQ(c.differing_positions, 0u)

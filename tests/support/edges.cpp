@@ -163,4 +163,9 @@ std::vector<Machine> contraction_policies(std::uint64_t seeds)
     return out;
 }
 
+bool meets_case(Machine const& policy, std::size_t i, std::size_t n)
+{
+    return policy.contraction != Contraction::Mixed || policy.seed % n == i;
+}
+
 } // namespace tessemu::test

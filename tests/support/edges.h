@@ -27,4 +27,8 @@ EdgeComparison compare_edges(PatchMesh const& patches, FrameSettings const& sett
 /// at most with 1 and 2.
 std::vector<Machine> contraction_policies(std::uint64_t seeds = 10);
 
+/// Which of n cases a policy meets where their product would be long: none and all every one, each
+/// seed of mixed one, all in turn.
+bool meets_case(Machine const& policy, std::size_t i, std::size_t n);
+
 } // namespace tessemu::test
