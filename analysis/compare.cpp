@@ -187,7 +187,7 @@ constexpr std::uint32_t kNoPartner = 0xffffffffu;
 struct SchemeSamples {
     Triangles triangles;
     std::vector<std::uint32_t> partner;
-    std::vector<int> sides; ///< of a quad patch that the point lies on: 0 to 2
+    std::vector<int> times; ///< as times_if_it_went_on()
 };
 
 // The drawn mesh's face that a patch lies on, whole or a part of it.
@@ -212,7 +212,7 @@ public:
     };
     OnFace find(PatchPlace const& place) const
     {
-        for (PatchPlace cell = place;; --cell.level, cell.i /= 2, cell.j /= 2) {
+        for (PatchPlace cell = place;; cell = parent(cell)) {
             auto const found = faces_.find(key(cell));
             if (found == faces_.end()) {
                 if (cell.level == 0) throw Error("a patch lies on no face of the drawn mesh");
@@ -220,9 +220,14 @@ public:
             }
             OnFace out{found->second.first, place, {}};
             int const steps = place.level - cell.level;
+            auto const in_cell = [&](int at, int first) {
+                return std::uint16_t(cell.is_flipped ? ((first + 1) << steps) - 1 - at
+                                                     : at - (first << steps));
+            };
             out.in_cell.level = std::uint8_t(steps);
-            out.in_cell.i = std::uint16_t(place.i - (cell.i << steps));
-            out.in_cell.j = std::uint16_t(place.j - (cell.j << steps));
+            out.in_cell.i = in_cell(place.i, cell.i);
+            out.in_cell.j = in_cell(place.j, cell.j);
+            out.in_cell.is_flipped = place.is_flipped != cell.is_flipped;
             out.turn.sides = place.sides;
             out.turn.rotation = std::uint8_t((place.sides - found->second.second) % place.sides);
             return out;
@@ -231,10 +236,31 @@ public:
 
 private:
     using Key =
-        std::tuple<std::uint32_t, std::uint16_t, std::uint8_t, std::uint16_t, std::uint16_t>;
-    static Key key(PatchPlace const& p) { return {p.face, p.corner, p.level, p.i, p.j}; }
+        std::tuple<std::uint32_t, std::uint16_t, std::uint8_t, bool, std::uint16_t, std::uint16_t>;
+    static Key key(PatchPlace const& p)
+    {
+        return {p.face, p.corner, p.level, p.is_flipped, p.i, p.j};
+    }
+    // The cell that a step made this one of. Of a parallelogram's eight triangles those belong to
+    // its flipped half whose middle lies beyond the diagonal.
+    static PatchPlace parent(PatchPlace p)
+    {
+        p.is_flipped = p.sides == 3 && (p.i & 1) + (p.j & 1) + int(p.is_flipped) > 1;
+        --p.level;
+        p.i /= 2;
+        p.j /= 2;
+        return p;
+    }
     std::map<Key, std::pair<std::uint32_t, int>> faces_;
 };
+
+// How much more of a patch would lie around a point, in a regular net, if the patch went on.
+int times_if_it_went_on(int sides, float u, float v)
+{
+    if (sides == 4) return 1 << ((u == 0 || u == 1) + (v == 0 || v == 1));
+    int const on = (u == 0) + (v == 0) + (u + v == 1); // so many sides
+    return on == 2 ? 6 : 1 << on;
+}
 
 SchemeSamples sample_scheme(LimitSurface const& limit, PatchMesh const& patches,
                             FrameSettings settings, ThreadPool const& threads)
@@ -267,7 +293,7 @@ SchemeSamples sample_scheme(LimitSurface const& limit, PatchMesh const& patches,
                     at = limit.vertex(on.face, int(x), int(y));
             }
             out.partner.push_back(at);
-            out.sides.push_back((u == 0 || u == 1) + (v == 0 || v == 1));
+            out.times.push_back(times_if_it_went_on(p.place().sides, u, v));
         }
         for (std::uint32_t i : p.triangles()) scheme.index.push_back(first + i);
     });
@@ -301,8 +327,7 @@ EqualParameterErrors errors_of(LimitSurface const& limit, SchemeSamples const& s
     same.index = out.triangles;
     same.weigh();
     out.weight = std::move(same.weight);
-    for (std::size_t i = 0; i < n; ++i)
-        out.grid_weight.push_back(out.weight[i] * (1 << samples.sides[i]));
+    for (std::size_t i = 0; i < n; ++i) out.grid_weight.push_back(out.weight[i] * samples.times[i]);
     return out;
 }
 
@@ -337,13 +362,23 @@ namespace {
 // The refinement of a comparison, which may be more than a machine holds.
 void check_level(RefinedMesh const& mesh, int level)
 {
-    constexpr std::uint64_t kMostQuads = std::uint64_t(1) << 25;
+    constexpr std::uint64_t kMostFaces = std::uint64_t(1) << 25;
     if (level > 6) throw LimitError("comparison level", std::uint64_t(level), 6);
-    std::uint64_t const quads = std::uint64_t(mesh.mesh().face_vertices.size())
-                                << (2 * std::max(0, level - 1));
-    if (quads > kMostQuads)
-        throw LimitError("quads of the limit surface at level " + std::to_string(level), quads,
-                         kMostQuads);
+    std::uint64_t faces = 0;
+    for (std::size_t f = 0; f < mesh.mesh().faces(); ++f)
+        faces += std::uint64_t(mesh.step().children(mesh.mesh().face(f).size()));
+    faces <<= 2 * std::max(0, level - 1);
+    std::string const what = mesh.step().keeps_triangles ? "triangles" : "quads";
+    if (faces > kMostFaces)
+        throw LimitError(what + " of the limit surface at level " + std::to_string(level), faces,
+                         kMostFaces);
+}
+
+// By the rules of the scheme.
+LimitSurface limit_of(RefinedMesh const& mesh, int level)
+{
+    check_level(mesh, level);
+    return {mesh.topology(), level, {}, mesh.step()};
 }
 
 } // namespace
@@ -351,8 +386,7 @@ void check_level(RefinedMesh const& mesh, int level)
 EqualParameterErrors equal_parameter_errors(PatchMesh const& patches, FrameSettings settings,
                                             int level, ThreadPool const& threads)
 {
-    check_level(patches.mesh(), level);
-    LimitSurface const limit(patches.mesh().topology(), level);
+    LimitSurface const limit = limit_of(patches.mesh(), level);
     return errors_of(limit, sample_scheme(limit, patches, settings, threads),
                      bounding_box_diagonal(patches.mesh().base()));
 }
@@ -361,8 +395,7 @@ SurfaceComparison compare_with_limit(PatchMesh const& patches, FrameSettings set
                                      ThreadPool const& threads)
 {
     RefinedMesh const& mesh = patches.mesh();
-    check_level(mesh, level);
-    LimitSurface const limit(mesh.topology(), level);
+    LimitSurface const limit = limit_of(mesh, level);
     SurfaceComparison out;
     out.diagonal = bounding_box_diagonal(mesh.base());
 
@@ -373,9 +406,10 @@ SurfaceComparison compare_with_limit(PatchMesh const& patches, FrameSettings set
     std::vector<char> const hidden = hidden_faces(mesh, warnings);
     for (std::uint32_t face = 0; face < mesh.mesh().faces(); ++face) {
         if (hidden[face]) continue;
-        for (std::size_t f = limit.first_quad(face); f < limit.first_quad(face + 1); ++f) {
-            LimitSurface::Quad const& q = limit.quads()[f];
-            smooth.index.insert(smooth.index.end(), {q[0], q[1], q[2], q[0], q[2], q[3]});
+        for (std::size_t f = limit.first_face(face); f < limit.first_face(face + 1); ++f) {
+            auto const corner = limit.face(f);
+            for (std::size_t k = 2; k < corner.size(); ++k)
+                smooth.index.insert(smooth.index.end(), {corner[0], corner[k - 1], corner[k]});
         }
     }
     smooth.weigh();

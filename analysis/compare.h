@@ -1,13 +1,15 @@
-// Error of a scheme's surface against the Catmull-Clark limit surface, as LOOP09's table 3 has it.
+// Error of a scheme's surface against the limit surface of its own rules of subdivision, those of
+// RefinedMesh::step(), as LOOP09's table 3 has it.
 //
 // Both surfaces are sampled at tess factor 2^level: the scheme's domain points by a draw, the limit
 // surface on its dyadic grid, where both are exact. By equal parameter a sample is compared with
-// the other surface's point of the same face and (u,v). By closest point (Metro: Cignoni, Rocchini,
-// Scopigno 1998) it is compared with the closest point of the other surface's triangles, found by
-// Embree's point query, and the normal interpolated there. Triangles that face away from the sample
-// are another sheet of a thin part and are passed over. A triangle of length h lies up to h^2/8
-// times the curvature inside the surface, which the distance includes. Samples weigh as the area
-// around them. Faces that the mesh hides take no part.
+// the other surface's point of the same face and (u,v), in a triangle of the same weights, where it
+// is on the grid: what the tessellator makes inside a triangle lies beside it. By closest point
+// (Metro: Cignoni, Rocchini, Scopigno 1998) it is compared with the closest point of the other
+// surface's triangles, found by Embree's point query, and the normal interpolated there. Triangles
+// that face away from the sample are another sheet of a thin part and are passed over. A triangle
+// of length h lies up to h^2/8 times the curvature inside the surface, which the distance includes.
+// Samples weigh as the area around them. Faces that the mesh hides take no part.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -23,8 +25,8 @@ struct ErrorStatistics {
     std::size_t samples = 0;
 };
 
-/// The scheme's surface with its error against the limit surface's point of equal parameter. Faces
-/// that are not quads are left out.
+/// The scheme's surface with its error against the limit surface's point of equal parameter. Left
+/// out: triangles with a corner beside the grid, and faces without one (LimitSurface::has_grid).
 struct EqualParameterErrors {
     double diagonal = 0; ///< of the bounding box of RefinedMesh::base()
     std::vector<glm::dvec3> position, normal;
@@ -46,7 +48,7 @@ private:
                                       std::vector<double> const& weights);
 };
 
-/// \param level  1 to 6: tess factor 2^level; the limit surface has up to 2^25 quads
+/// \param level  1 to 6: tess factor 2^level; the limit surface has up to 2^25 faces
 EqualParameterErrors equal_parameter_errors(PatchMesh const& patches, FrameSettings settings,
                                             int level, ThreadPool const& threads);
 
@@ -58,7 +60,7 @@ struct SurfaceComparison {
     double diagonal = 0; ///< of the bounding box of RefinedMesh::base(); divides distances
     ErrorStatistics to_limit, from_limit; ///< closest point: scheme's samples, limit's samples
     ErrorStatistics normal_to_limit, normal_from_limit; ///< angles there, radians
-    ErrorStatistics equal_position, equal_normal;       ///< by equal parameter; quads only
+    ErrorStatistics equal_position, equal_normal;       ///< by equal parameter
     ErrorStatistics equal_normal_grid;                  ///< see EqualParameterErrors::grid_weight
 };
 

@@ -50,7 +50,7 @@ void add_compare(CommandLine& program)
 {
     auto const o = std::make_shared<CompareRequest>();
     Verb& verb = program.add_verb(
-        "compare", "distance and normal error against the Catmull-Clark limit surface",
+        "compare", "distance and normal error against the limit surface of a scheme's rules",
         "  tessemu compare cage.obj\n"
         "  tessemu compare cage.obj --level 5 --json error.json");
     add_level(verb, o->level, "both surfaces at 2^level segments an edge, 1 to 6");

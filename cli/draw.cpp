@@ -131,7 +131,8 @@ int run_error_view(DrawRequest const& o, Job& job, OutputFile* picture, RunOutpu
     Stopwatch const clock;
     EqualParameterErrors const e = equal_parameter_errors(job.patches(), f, o.level, threads);
     if (e.triangles.empty())
-        throw Error(job.path + ": --view error needs quads, and none is drawn");
+        throw Error(job.path + ": --view error needs quads, or triangles of a regular pattern, and "
+                               "none is drawn");
     double const position =
         o.error_max ? o.error_max->position : quantile(e.distance, e.weight, 0.99);
     double const normal = o.error_max ? o.error_max->angle : quantile(e.angle, e.weight, 0.99);
@@ -309,7 +310,7 @@ void add_draw(CommandLine& program)
         "lit, normals, patches, depth, wire; valence: patches by that of their extraordinary "
         "vertex; zebra: reflection lines; curvature: mean curvature, of schemes that have second "
         "derivatives; coverage: how often a pixel is covered, before depth; cage: the control "
-        "mesh; error: against the Catmull-Clark limit surface",
+        "mesh; error: against the limit surface of its rules",
         "lit");
     verb.option("--error-max", o->error_max, parse_error_max,
                 "of the error view: POSITION,ANGLE that are red, in diagonals and radians; auto: "

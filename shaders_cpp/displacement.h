@@ -134,11 +134,12 @@ struct OwnedCoordinates {
     static constexpr int kPairs = 4, kWholes = 3;
     static constexpr int kFloats = 2 * (kPairs + kWholes);
     /// Bits of a patch's second word.
-    static constexpr int kTurns = 3;    ///< how often the patch is turned against the face
-    static constexpr int kReversed = 2; ///< shift: bit k, edge k runs against its canonical one
-    static constexpr int kHalves = 64;  ///< the quad at an n-gon's corner: edges 0, 3 are halves
-    static constexpr int kLevel = 8;    ///< shift: the patch has a side of 2^-level of the face's
-    static constexpr int kCell = 16;    ///< shift: its cell, row by row
+    static constexpr int kTurns = 3;     ///< how often the patch is turned against the face
+    static constexpr int kReversed = 2;  ///< shift: bit k, edge k runs against its canonical one
+    static constexpr int kHalves = 64;   ///< the quad at an n-gon's corner: edges 0, 3 are halves
+    static constexpr int kFlipped = 128; ///< a triangle's cell is upside down
+    static constexpr int kLevel = 8;     ///< shift: the patch has a side of 2^-level of the face's
+    static constexpr int kCell = 16;     ///< shift: its cell, row by row
 
     Buffer<float> corners;         ///< [face corner][kPairs + kWholes][2]
     Buffer<std::uint32_t> patches; ///< [primitive][2]: the face's first corner; the bits above
@@ -158,8 +159,13 @@ struct OwnedCoordinates {
         // Turned into the face's frame, then into the patch's cell: all of it exact.
         int const turns = word & kTurns, cell = word >> kCell & 0xffff;
         T const U = T(1) - in.u, V = T(1) - in.v;
-        T const u = turns == 0 ? in.u : turns == 1 ? V : turns == 2 ? U : in.v;
-        T const v = turns == 0 ? in.v : turns == 1 ? in.u : turns == 2 ? V : U;
+        T u = turns == 0 ? in.u : turns == 1 ? V : turns == 2 ? U : in.v;
+        T v = turns == 0 ? in.v : turns == 1 ? in.u : turns == 2 ? V : U;
+        if (sides == 3) {
+            u = turns == 0 ? in.u : turns == 1 ? in.w : in.v;
+            v = turns == 0 ? in.v : turns == 1 ? in.u : in.w;
+            if (word & kFlipped) u = T(1) - u, v = T(1) - v;
+        }
         T const size(1.0f / float(1 << level));
         return in_face<T>(first, word & ~kTurns, size * T(T(float(cell & ((1 << level) - 1))) + u),
                           size * T(T(float(cell >> level)) + v));

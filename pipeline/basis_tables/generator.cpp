@@ -217,7 +217,7 @@ Piece refined(Piece const& piece)
     Sharpness const sharpness(topology, piece.is_cut);
     std::vector<X> points = refined_points<CatmullClark, X>(topology, sharpness, piece.points);
     ControlMesh const fine =
-        catmull_clark_mesh(topology, sharpness, std::vector<glm::dvec3>(points.size()));
+        split_mesh(topology, sharpness, std::vector<glm::dvec3>(points.size()), false);
     std::vector<Place> places(points.size());
     std::vector<char> of_patch(fine.faces(), 0), is_kept(points.size(), 0);
     for (HalfEdge h = 0; h < fine.faces(); ++h) { // a face for each corner of the coarse ones

@@ -143,6 +143,7 @@ std::vector<std::uint32_t> patch_words(ControlMesh const& mesh, Displacement con
                 if (face[(k + turns) % n] > face[(k + 1 + turns) % n])
                     word |= 1u << (unsigned(C::kReversed) + k);
         }
+        if (p.is_flipped) word |= C::kFlipped;
         word |= std::uint32_t(p.level) << C::kLevel;
         word |= (std::uint32_t(p.i) + (std::uint32_t(p.j) << p.level)) << C::kCell;
         words.insert(words.end(), {displacement.first_corner(mesh, p), word});

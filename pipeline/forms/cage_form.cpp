@@ -40,8 +40,9 @@ VertexShader vertex_shader(SurfaceSettings const& s, bool at_rest)
 
 } // namespace
 
-CageForm::CageForm(std::shared_ptr<RefinedMesh const> refined)
+CageForm::CageForm(std::shared_ptr<RefinedMesh const> refined, CageNormals whose)
     : PatchMesh(std::move(refined)),
+      face_normals_(whose == CageNormals::Faces),
       groups_{{{"triangle", PatchClass::Triangle}, 3, {}, {}},
               {{"quad", PatchClass::IrregularQuad}, 4, {}, {}}}
 {
@@ -73,20 +74,22 @@ VertexSource CageForm::vertices(CommandList& list, SurfaceSettings const& s) con
     return out;
 }
 
+HullShader CageForm::hull_shader(int sides, SurfaceSettings const& s) const
+{
+    if (sides == 3) return bind_hull_shader(cage_hull_shader<TessellatorDomain::Tri>(s), s.machine);
+    return bind_hull_shader(cage_hull_shader<TessellatorDomain::Quad>(s), s.machine);
+}
+
 CommandList CageForm::commands(SurfaceSettings const& s) const
 {
     CommandList list;
     VertexSource const source = vertices(list, s);
     for (Group const& g : groups_) {
         if (g.patches.empty()) continue;
-        HullShader const hull =
-            g.sides == 3 ? bind_hull_shader(CageHullShader<TessellatorDomain::Tri>{s.factor_rule()},
-                                            s.machine)
-                         : bind_hull_shader(
-                               CageHullShader<TessellatorDomain::Quad>{s.factor_rule()}, s.machine);
         add_patch_draw(list, mesh(),
                        {g.kind, source, g.sides, g.indices, g.patches,
-                        vertex_shader(s, mesh().steps() == 0), hull, domain_shader(g.sides, s)},
+                        vertex_shader(s, mesh().steps() == 0), hull_shader(g.sides, s),
+                        domain_shader(g.sides, s)},
                        s);
     }
     return list;

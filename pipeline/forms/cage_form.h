@@ -14,6 +14,10 @@ namespace tessemu {
 /// \cost linear in the faces
 std::vector<glm::vec3> vertex_normals(ControlMesh const& mesh);
 
+/// Whose normals a face's corners have: their vertices', or the face's own in the pose that is
+/// drawn, as in a mesh whose normals are split along all edges.
+enum class CageNormals { Vertices, Faces };
+
 class CageForm : public PatchMesh {
 public:
     CommandList commands(SurfaceSettings const& settings) const final;
@@ -22,11 +26,20 @@ public:
 
 protected:
     /// \param mesh  of triangles and quads
-    explicit CageForm(std::shared_ptr<RefinedMesh const> mesh);
+    explicit CageForm(std::shared_ptr<RefinedMesh const> mesh,
+                      CageNormals normals = CageNormals::Vertices);
 
     /// What a scheme says: of patches with so many sides, from NormalVertex patches to
     /// SurfacePoints.
     virtual DomainShader domain_shader(int sides, SurfaceSettings const& settings) const = 0;
+    /// From NormalVertex patches to them, by default without patch constants.
+    virtual HullShader hull_shader(int sides, SurfaceSettings const& settings) const;
+    /// What hull shaders begin with.
+    template <TessellatorDomain kDomain>
+    CageHullShader<kDomain> cage_hull_shader(SurfaceSettings const& settings) const
+    {
+        return {settings.factor_rule(), face_normals_};
+    }
 
 private:
     struct Group {
@@ -37,6 +50,7 @@ private:
     };
     VertexSource vertices(CommandList& list, SurfaceSettings const& settings) const;
 
+    bool face_normals_;
     std::vector<float> vertices_; // of the file's mesh: position and normal, six floats each
     Poles normals_;               // of a mesh that steps make: a dispatch makes its normals
     Group groups_[2];             // triangles, quads

@@ -4,8 +4,7 @@
 #pragma once
 
 #include "pipeline/mesh/limit_constants.h"
-#include "pipeline/mesh/refinement.h"
-#include "pipeline/mesh/subdivision.h"
+#include "pipeline/mesh/refined_step.h"
 
 #include <glm/vec3.hpp>
 
@@ -16,7 +15,7 @@ namespace tessemu {
 /// F = mean of the face, E = (a + b + F + F')/4, V = (n-2)/n V + mean(d)/n + mean(F)/n (LOOP10
 /// section 3; docs/math/subdivision.md, 1.1); along a boundary or crease midpoints and (1,6,1)/8.
 struct CatmullClark {
-    static constexpr bool kFacePoints = true;
+    static constexpr bool kKeepsTriangles = false, kSectorRules = true;
 
     template <class X> static X face(X const& sum, int sides) { return sum / double(sides); }
     /// At triangles to be smoothed the faces' points weigh 0.47 on a triangle's side and 1/4 on
@@ -123,20 +122,12 @@ struct CatmullClark {
     }
 };
 
-/// One step, with the mesh's creases, corners and boundary rule. Tags go on to the new edges and
-/// vertices, decremented; the quads of holes are holes.
-///
-/// \param first  of the mesh's vertices in the tables' vertex buffer; above 0 all faces are quads,
-///               for a step has made them
-/// \returns  the mesh: face points, edge points by their EdgeNumbers, vertex points; quads face by
-///           face, each starting at its old vertex. Sums run in double and are rounded once. And
-///           the tables by which kernels make the same points.
-RefinedStep catmull_clark_step(Topology const& topology, std::uint32_t first = 0);
-
-/// The step's faces and tags, without texture coordinates.
-///
-/// \param points  of the step's vertices, as refined_points() gives them; rounded
-ControlMesh catmull_clark_mesh(Topology const& topology, Sharpness const& sharpness,
-                               std::span<glm::dvec3 const> points);
+/// With the mesh's creases, corners and boundary rule. Tags go on to the new edges and vertices,
+/// decremented; the quads of holes are holes. `first` above 0: all faces are quads, for a step has
+/// made them. The tables are those by which LOOP10's kernels make the same points.
+RefinedStep take_catmull_clark_step(Topology const& topology, std::uint32_t first);
+extern LimitRules const catmull_clark_limits;
+inline constexpr RefinementStep catmull_clark_step{take_catmull_clark_step, false, "Catmull-Clark",
+                                                   &catmull_clark_limits};
 
 } // namespace tessemu

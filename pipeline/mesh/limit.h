@@ -53,7 +53,7 @@ struct DartMasks {
 template <class Masks>
 DartMasks dart_masks(std::size_t n, SectorRules rules = SectorRules::OpenSubdiv)
 {
-    std::size_t const size = 2 * n + 1;
+    std::size_t const size = (Masks::kKeepsTriangles ? 1 : 2) * n + 1;
     auto const unit = [&](std::size_t i) {
         RingWeights w(0.0, size);
         w[i] = 1;
@@ -62,7 +62,7 @@ DartMasks dart_masks(std::size_t n, SectorRules rules = SectorRules::OpenSubdiv)
     Ring<RingWeights> ring{unit(0), {}, {}};
     for (std::size_t j = 0; j < n; ++j) {
         ring.edge.push_back(unit(1 + j));
-        ring.face.push_back(unit(1 + n + j));
+        if constexpr (!Masks::kKeepsTriangles) ring.face.push_back(unit(1 + n + j));
     }
     auto const edge = [&](std::size_t j) -> RingWeights const& { return ring.edge[j]; };
     auto const face = [&](std::size_t j) -> RingWeights const& { return ring.face[j]; };
@@ -84,7 +84,7 @@ DartMasks dart_masks(std::size_t n, SectorRules rules = SectorRules::OpenSubdiv)
     add_row(0, step.vertex);
     for (std::size_t j = 0; j < n; ++j) {
         add_row(1 + j, step.edge[j]);
-        add_row(1 + n + j, step.face[j]);
+        if constexpr (!Masks::kKeepsTriangles) add_row(1 + n + j, step.face[j]);
     }
     // Converges with the ratio of the first two eigenvalues, which is 1 - O(1/n^2) for the
     // tangents.
@@ -107,7 +107,7 @@ DartMasks dart_masks(std::size_t n, SectorRules rules = SectorRules::OpenSubdiv)
         RingWeights m = w;
         for (std::size_t j = 0; j < n; ++j) {
             m[1 + j] = w[1 + (n - j) % n];
-            m[1 + n + j] = w[2 * n - j];
+            if constexpr (!Masks::kKeepsTriangles) m[1 + n + j] = w[2 * n - j];
         }
         return m;
     };
@@ -131,7 +131,7 @@ DartMasks dart_masks(std::size_t n, SectorRules rules = SectorRules::OpenSubdiv)
 /// Makes limits; keeps what it has computed of darts.
 template <class Masks> class Limits {
 public:
-    /// \param ring   on a mesh of quads
+    /// \param ring   on a mesh of quads, or of triangles that the masks keep
     /// \param sharp  of the same vertex; while finite sharpness is left, and where an edge leans
     ///               away from the vertex, the ring is refined further
     /// By Biermann's rules nothing else that is flattened may share a face with the vertex.
@@ -146,18 +146,20 @@ public:
             ring = split_ring<Masks>(ring, sharp);
             sharp = sharp.after_step();
         }
-        std::size_t const n = ring.faces();
+        std::size_t const n = sharp.faces();
         auto const edge = [&](std::size_t j) -> X const& {
             return ring.edge[j % ring.edge.size()];
         };
         auto const face = [&](std::size_t j) -> X const& { return ring.face[j % n]; };
         VertexRule const rule = sharp.rule();
         std::vector<RingSector> const sectors = sharp.sectors();
-        auto const turning = [&](RingSector const& s, int quarters) {
-            return Masks::turning(
-                int(s.faces), s.turn, s.of, quarters, ring.vertex,
-                [&](std::size_t j) -> X const& { return edge(s.first + j); },
-                [&](std::size_t j) -> X const& { return face(s.first + j); });
+        auto const turning = [&](RingSector const& s, int quarters) -> X {
+            if constexpr (Masks::kSectorRules)
+                return Masks::turning(
+                    int(s.faces), s.turn, s.of, quarters, ring.vertex,
+                    [&](std::size_t j) -> X const& { return edge(s.first + j); },
+                    [&](std::size_t j) -> X const& { return face(s.first + j); });
+            throw Error("these masks have no rules for sectors");
         };
         bool const is_cut =
             std::any_of(sharp.edge.begin(), sharp.edge.end(), [](float s) { return s > 0; });
@@ -182,10 +184,11 @@ public:
             auto const edge_of_side = [&](std::size_t j) -> X const& { return edge(first + j); };
             auto const face_of_side = [&](std::size_t j) -> X const& { return face(first + j); };
             auto const across = [&]() -> X {
-                return sharp.biermann
-                           ? Masks::crease_across_by_biermann(int(k), ring.vertex, edge_of_side,
-                                                              face_of_side)
-                           : Masks::crease_across(int(k), ring.vertex, edge_of_side, face_of_side);
+                if constexpr (Masks::kSectorRules)
+                    if (sharp.biermann)
+                        return Masks::crease_across_by_biermann(int(k), ring.vertex, edge_of_side,
+                                                                face_of_side);
+                return Masks::crease_across(int(k), ring.vertex, edge_of_side, face_of_side);
             };
             // With one face the ring shrinks to the curve's plane: its eigenvalue 1/4 has one
             // eigenvector, to which the face's own difference adds more with each step.
@@ -206,7 +209,7 @@ private:
     template <class X>
     VertexLimit<X> dart(Ring<X> const& ring, std::size_t sharp_edge, bool biermann)
     {
-        std::size_t const n = ring.faces();
+        std::size_t const n = ring.edge.size();
         auto [found, is_new] = darts_.try_emplace({n, biermann});
         if (is_new)
             found->second =
@@ -217,7 +220,7 @@ private:
             for (std::size_t j = 0; j < n; ++j) {
                 std::size_t const i = (sharp_edge + j) % n;
                 sum += ring.edge[i] * w[1 + j];
-                sum += ring.face[i] * w[1 + n + j];
+                if constexpr (!Masks::kKeepsTriangles) sum += ring.face[i] * w[1 + n + j];
             }
             return sum;
         };

@@ -28,10 +28,15 @@ Place2 in_unit(PatchPlace const& p, std::uint32_t u, std::uint32_t v)
 // Weights of a triangle's corners, in 2^-25.
 std::array<std::uint32_t, 3> in_triangle(PatchPlace const& p, std::uint32_t u, std::uint32_t v)
 {
-    std::array<std::uint32_t, 3> const domain{u, v, 65536 - u - v};
-    std::array<std::uint32_t, 3> out{};
-    for (std::size_t i = 0; i < 3; ++i) out[(i + p.rotation) % 3] = domain[i] << 9;
-    return out;
+    constexpr std::uint32_t one = 65536;
+    std::array<std::uint32_t, 3> const domain{u, v, one - u - v};
+    std::array<std::uint32_t, 3> cell{};
+    for (std::size_t i = 0; i < 3; ++i) cell[(i + p.rotation) % 3] = domain[i];
+    auto const at = [&](std::uint32_t first, std::uint32_t weight) {
+        return ((first << 16) + (p.is_flipped ? one - weight : weight)) << (25 - 16 - p.level);
+    };
+    std::uint32_t const x = at(p.i, cell[0]), y = at(p.j, cell[1]);
+    return {x, y, kOne - x - y};
 }
 
 std::uint32_t vertex(ControlMesh const& mesh, PatchPlace const& p, std::size_t i)
@@ -95,11 +100,33 @@ PatchPlace split(PatchPlace const& face, int sides, int corner)
     return p;
 }
 
+PatchPlace split_triangle(PatchPlace const& face, int child)
+{
+    PatchPlace p = face;
+    ++p.level;
+    p.i = std::uint16_t(2 * p.i + face.is_flipped);
+    p.j = std::uint16_t(2 * p.j + face.is_flipped);
+    if (child == 3) {
+        p.is_flipped = !face.is_flipped;
+        p.rotation = std::uint8_t((face.rotation + 2) % 3);
+        return p;
+    }
+    p.rotation = std::uint8_t((face.rotation + child) % 3); // of the cell
+    int const away = face.is_flipped ? -1 : 1;
+    if (p.rotation == 0) p.i = std::uint16_t(p.i + away);
+    if (p.rotation == 1) p.j = std::uint16_t(p.j + away);
+    return p;
+}
+
 UnitPoint domain_to_unit(PatchPlace const& p, float u, float v)
 {
     if (p.sides == 3) {
         float const weight[3] = {u, v, 1 - u - v};
-        return {weight[(3 - p.rotation) % 3], weight[(4 - p.rotation) % 3]};
+        UnitPoint const at{weight[(3 - p.rotation) % 3], weight[(4 - p.rotation) % 3]};
+        if (p.level == 0) return at;
+        float const size = 1.0f / float(1 << p.level);
+        return {size * (float(p.i) + (p.is_flipped ? 1 - at.u : at.u)),
+                size * (float(p.j) + (p.is_flipped ? 1 - at.v : at.v))};
     }
     std::array<UnitPoint, 4> const turned{{{u, v}, {1 - v, u}, {1 - u, 1 - v}, {v, 1 - u}}};
     UnitPoint const at = turned[p.rotation];
@@ -171,7 +198,20 @@ std::string in_words(MeshPoint const& m)
 
 MeshInterval mesh_interval(ControlMesh const& mesh, PatchPlace const& p, int k)
 {
-    if (p.sides == 3) return along_edge(mesh, p, std::size_t((k + p.rotation) % 3), 0, kOne);
+    if (p.sides == 3) {
+        constexpr std::uint32_t kCorners[3][2] = {{65536, 0}, {0, 65536}, {0, 0}};
+        auto const end = [&](int i) {
+            return in_triangle(p, kCorners[i % 3][0], kCorners[i % 3][1]);
+        };
+        auto const a = end(k), b = end(k + 1);
+        // An edge k of the face is where the weight of corner k - 1 is 0.
+        for (std::size_t i = 0; i < 3; ++i)
+            if (a[(i + 2) % 3] == 0 && b[(i + 2) % 3] == 0)
+                return along_edge(mesh, p, i, a[(i + 1) % 3], b[(i + 1) % 3]);
+        if (a[0] == b[0]) return {{MeshLine::Kind::ConstantX, p.face, p.corner, a[0]}, a[1], b[1]};
+        if (a[1] == b[1]) return {{MeshLine::Kind::ConstantY, p.face, p.corner, a[1]}, a[0], b[0]};
+        return {{MeshLine::Kind::ConstantSum, p.face, p.corner, kOne - a[2]}, a[0], b[0]};
+    }
     constexpr std::uint32_t kCorner[4][2] = {{0, 0}, {65536, 0}, {65536, 65536}, {0, 65536}};
     auto const end = [&](int i) { return in_unit(p, kCorner[i % 4][0], kCorner[i % 4][1]); };
     Place2 const a = end(k), b = end(k + 1);

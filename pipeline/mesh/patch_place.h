@@ -11,7 +11,9 @@
 //     0 --- 1  +-x (0,0) corner k -(1,0)
 //                     half of edge k
 //
-// A patch covers a dyadic cell of its unit. Coordinates are whole numbers of 2^-25.
+// A patch covers a dyadic cell of its unit: of a triangle's, cell (i, j) is the triangle whose corner
+// 2 is the point (i, j), or, if it is flipped, the other half of that parallelogram. Coordinates are
+// whole numbers of 2^-25.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -31,6 +33,7 @@ struct PatchPlace {
     std::uint8_t sides = 4;        ///< of the patch
     std::uint8_t rotation = 0;     ///< the domain's corner 0 is corner `rotation` of the cell
     std::uint8_t level = 0;        ///< the cell's side is 2^-level of the unit's
+    bool is_flipped = false;       ///< of a triangle: upside down, corner 0 at (i, j+1)
     std::uint16_t i = 0, j = 0;    ///< cell [i, i+1] x [j, j+1], in its sides
 
     friend bool operator==(PatchPlace const&, PatchPlace const&) = default;
@@ -41,6 +44,9 @@ PatchPlace turned(PatchPlace face, int turns);
 /// The places of the quads that a split makes of a face, one at each corner; each starts at the old
 /// vertex and runs along the face's edge there. \param sides  of the face
 PatchPlace split(PatchPlace const& face, int sides, int corner);
+/// The places of the triangles that a split makes of one: at corners 0 to 2, each from the old
+/// vertex on, and 3, the middle, from the middle of edge 0 on.
+PatchPlace split_triangle(PatchPlace const& face, int child);
 
 /// A domain point in its unit: quad, x and y as drawn above; triangle, weights of corners 0 and 1.
 /// Exact for 16-bit fractions.
@@ -72,10 +78,10 @@ std::string in_words(MeshPoint const& point);
 
 /// A line that edges of patches lie on: an edge of the mesh, or a line of a unit.
 struct MeshLine {
-    enum class Kind : std::uint8_t { Edge, ConstantX, ConstantY };
+    enum class Kind : std::uint8_t { Edge, ConstantX, ConstantY, ConstantSum };
     Kind kind = Kind::Edge;
     std::uint32_t a = 0, b = 0; ///< Edge: vertices, a < b; otherwise face and corner of the unit
-    std::uint32_t at = 0;       ///< the constant coordinate; Edge: the side of a slit
+    std::uint32_t at = 0;       ///< the constant coordinate or sum; Edge: the side of a slit
 
     friend auto operator<=>(MeshLine const&, MeshLine const&) = default;
 };

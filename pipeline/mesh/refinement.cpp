@@ -7,16 +7,18 @@ RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step,
                          RefinementProgress const& progress)
     : base_(std::make_unique<ControlMesh const>(std::move(mesh))),
       base_topology_(std::make_unique<Topology const>(*base_)),
-      steps_(steps)
+      steps_(steps),
+      step_(step)
 {
     static_assert(kMaxSteps <= PatchPlace::kMaxLevel);
     if (steps < 0)
         throw Error("steps of subdivision is " + std::to_string(steps) + ", it must be 0 or more");
     if (steps > kMaxSteps)
         throw LimitError("steps of subdivision", std::uint64_t(steps), kMaxSteps);
-    auto const faces = [&](int n) {
-        return n ? std::uint64_t(base_->face_vertices.size()) << 2 * (n - 1) : base_->faces();
-    };
+    std::uint64_t children = 0; // of the first step, four times as many with each other
+    for (std::size_t f = 0; f < base_->faces(); ++f)
+        children += std::uint64_t(step.children(base_->face(f).size()));
+    auto const faces = [&](int n) { return n ? children << 2 * (n - 1) : base_->faces(); };
     if (int fit = steps; faces(steps) > kMostFaces) {
         while (fit > 0 && faces(fit) > kMostFaces) --fit;
         throw LimitError("faces after " + std::to_string(steps) + " steps of subdivision (" +
@@ -48,8 +50,10 @@ RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step,
         std::vector<PatchPlace> places;
         places.reserve(fine->faces());
         for (std::uint32_t f = 0; f < coarse.faces(); ++f) {
-            int const sides = int(coarse.face(f).size());
-            for (int k = 0; k < sides; ++k) places.push_back(split(places_[f], sides, k));
+            int const sides = int(coarse.face(f).size()), count = step.children(std::size_t(sides));
+            for (int k = 0; k < count; ++k)
+                places.push_back(count > sides ? split_triangle(places_[f], k)
+                                               : split(places_[f], sides, k));
         }
         places_ = std::move(places);
         topology_.reset(); // reads mesh_

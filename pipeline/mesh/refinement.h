@@ -12,14 +12,28 @@
 
 namespace tessemu {
 
-/// A step: quads' children are four quads, any other face's a quad for each corner, in the order of
-/// the corners; tags are carried along, each a step less sharp.
+/// A step's mesh and how kernels make its positions. Quads' children are four quads, of any other
+/// face a quad for each corner, in the order of the corners, or of a triangle four triangles, as
+/// split_triangle() has them; tags are carried along, each a step less sharp.
 struct RefinedStep {
     ControlMesh mesh;
     SubdivisionTables tables;
 };
-/// \param first  of the mesh's vertices in the vertex buffer
-using RefinementStep = RefinedStep (*)(Topology const&, std::uint32_t first);
+struct LimitRules; // limit_points.h
+/// A scheme's step.
+struct RefinementStep {
+    /// \param first  of the mesh's vertices in the vertex buffer
+    RefinedStep (*take)(Topology const&, std::uint32_t first);
+    bool keeps_triangles = false;      ///< their children are triangles
+    char const* name = "";             ///< of the scheme, for messages: "Loop"
+    LimitRules const* limit = nullptr; ///< of the surface that steps come to
+
+    RefinedStep operator()(Topology const& topology, std::uint32_t first = 0) const
+    {
+        return take(topology, first);
+    }
+    int children(std::size_t sides) const { return keeps_triangles && sides == 3 ? 4 : int(sides); }
+};
 
 /// Told while steps are taken: work done, of all.
 using RefinementProgress = std::function<void(std::size_t, std::size_t)>;
@@ -46,6 +60,8 @@ public:
     ControlMesh const& mesh() const { return steps_ ? *mesh_ : *base_; }
     Topology const& topology() const { return steps_ ? *topology_ : *base_topology_; }
     int steps() const { return steps_; }
+    /// Whose rules the surface has, whether steps are taken or not.
+    RefinementStep const& step() const { return step_; }
     /// By step: what kernels make mesh()'s positions from base()'s with, in one buffer of all.
     std::span<SubdivisionTables const> tables() const { return tables_; }
 
@@ -63,6 +79,7 @@ private:
     std::unique_ptr<ControlMesh const> base_, mesh_;
     std::unique_ptr<Topology const> base_topology_, topology_;
     int steps_;
+    RefinementStep step_;
     std::vector<SubdivisionTables> tables_;
     std::vector<PatchPlace> places_; // by face of mesh()
 };

@@ -2,8 +2,12 @@
 //
 // A scheme is a traits class, Masks (see catmull_clark.h):
 //
-//     kFacePoints               whether faces' points are vertices of the refined mesh
-//     face(sum, sides)          point of a face, of the sum of its vertices
+//     kKeepsTriangles           triangles are split in four triangles; any other face, or each, in
+//                               quads around a point of its own
+//     kSectorRules              Biermann's rules are known, and all that limit.h and flatness.h
+//                               ask for them
+//     face(sum, sides)          of the sum of a face's vertices its point, or what stands for it in
+//                               the points of edges and vertices
 //     edge(a, b, left, right, triangles)  of a smooth edge and the points of its faces, so many of
 //                               them triangles to be smoothed (`smoothtriangles smooth`)
 //     vertex(n, v, edges, faces)  of a smooth vertex, the sums of its edges' far ends and of its
@@ -13,8 +17,8 @@
 //                               Biermann's rules (docs/math/subdivision.md, 5.2)
 //
 // Points are of any type X that can be added, and multiplied and divided by a number: positions,
-// or rows of weights. A triangle's third vertex is 3 F - a - b of its mean F, so Loop's edge points
-// are edge(a, b, F, F', 0) too. Where sharpness blends rules: docs/math/subdivision.md, 1.7.
+// or rows of weights. A triangle's third vertex is F - a - b of the sum F of all, so Loop's edge
+// points are edge(a, b, F, F', 0) too. Where sharpness blends rules: docs/math/subdivision.md, 1.7.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -69,12 +73,12 @@ X vertex_point(RingSharpness const& now, std::size_t n, X const& v, Edge const& 
 }
 
 /// A vertex, its edges' far ends and, where its faces are quads, their opposite vertices; edges and
-/// faces as in RingSharpness.
+/// faces as in RingSharpness. Of triangles `face` is empty.
 template <class X> struct Ring {
     X vertex;
     std::vector<X> edge, face;
 
-    std::size_t faces() const { return face.size(); }
+    std::size_t faces() const { return face.size(); } ///< of quads
     /// The vertex, the edges' far ends, the faces' opposite vertices.
     X& point(std::size_t i)
     {
@@ -84,26 +88,23 @@ template <class X> struct Ring {
     {
         return edge[face_index + 1 < edge.size() ? face_index + 1 : 0];
     }
-    std::size_t face_before(std::size_t edge_index) const
-    {
-        return (edge_index == 0 ? face.size() : edge_index) - 1;
-    }
 };
 
 /// The ring of the same vertex after a step, not flattened.
 template <class Masks, class X> Ring<X> split_ring(Ring<X> const& ring, RingSharpness const& sharp)
 {
+    std::size_t const n = sharp.faces();
     std::vector<X> face_point;
-    for (std::size_t j = 0; j < ring.faces(); ++j) {
+    for (std::size_t j = 0; j < n; ++j) {
         X sum = ring.vertex;
         sum += ring.edge[j];
-        sum += ring.face[j];
+        if constexpr (!Masks::kKeepsTriangles) sum += ring.face[j];
         sum += ring.edge_after(j);
-        face_point.push_back(Masks::face(sum, 4));
+        face_point.push_back(Masks::face(sum, Masks::kKeepsTriangles ? 3 : 4));
     }
     auto const edge = [&](std::size_t j) -> X const& { return ring.edge[j]; };
     auto const face = [&](std::size_t j) -> X const& { return face_point[j]; };
-    Ring<X> out{vertex_point<Masks>(sharp, ring.faces(), ring.vertex, edge, face), {}, {}};
+    Ring<X> out{vertex_point<Masks>(sharp, n, ring.vertex, edge, face), {}, {}};
     std::vector<Lean> const leans = sharp.leans();
     for (std::size_t j = 0; j < ring.edge.size(); ++j) {
         float const s = sharp.edge[j];
@@ -114,11 +115,11 @@ template <class Masks, class X> Ring<X> split_ring(Ring<X> const& ring, RingShar
             continue;
         }
         X smooth = Masks::edge(ring.vertex, ring.edge[j], face_point[j],
-                               face_point[ring.face_before(j)], 0);
+                               face_point[(j == 0 ? n : j) - 1], 0);
         if (!leans.empty()) lean<Masks>(smooth, leans[j], ring.vertex, ring.edge[j]);
         out.edge.push_back(w == 0 ? smooth : smooth * (1 - w) + middle * w);
     }
-    out.face = std::move(face_point);
+    if constexpr (!Masks::kKeepsTriangles) out.face = std::move(face_point);
     return out;
 }
 

@@ -66,6 +66,7 @@ struct RingSharpness {
     /// By edge: theta's cosine at the far end, where something is sharp there; empty: nowhere is.
     std::vector<std::optional<double>> far_cos_theta;
 
+    std::size_t faces() const { return edge.size() - (open ? 1 : 0); }
     VertexRule rule() const;
     /// In the order of their first edges.
     std::vector<RingSector> sectors() const;

@@ -18,4 +18,14 @@ EdgeNumbers::EdgeNumbers(Topology const& topology)
     }
 }
 
+PointNumbers::PointNumbers(Topology const& topology, bool keeps_triangles) : edges_(topology)
+{
+    ControlMesh const& mesh = topology.mesh();
+    first_edge_ = 0;
+    for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
+        if (keeps_triangles) faces_.push_back(first_edge_);
+        first_edge_ += !keeps_triangles || mesh.face(f).size() != 3;
+    }
+}
+
 } // namespace tessemu

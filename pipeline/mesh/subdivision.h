@@ -26,6 +26,27 @@ private:
     std::vector<HalfEdge> first_;
 };
 
+/// The points of a step by number: of the faces that have one, in their order, then edges, then
+/// vertices.
+class PointNumbers {
+public:
+    /// \param keeps_triangles  a triangle has no point of its own
+    PointNumbers(Topology const& topology, bool keeps_triangles);
+
+    std::uint32_t face(std::uint32_t f) const { return faces_.empty() ? f : faces_[f]; }
+    std::uint32_t edge(HalfEdge h) const { return first_edge_ + edges_[h]; }
+    std::uint32_t vertex(std::uint32_t v) const
+    {
+        return first_edge_ + std::uint32_t(edges_.size()) + v;
+    }
+    EdgeNumbers const& edges() const { return edges_; }
+
+private:
+    EdgeNumbers edges_;
+    std::vector<std::uint32_t> faces_; // empty: all have one
+    std::uint32_t first_edge_;
+};
+
 /// How many of an edge's faces are triangles to be smoothed.
 inline int triangles_to_smooth(Topology const& t, std::uint32_t face, std::uint32_t other)
 {
@@ -65,7 +86,7 @@ void each_flat_ring(Topology const& topology, Sharpness const& sharpness, EdgeNu
 /// The points after a step.
 ///
 /// \param x  of the mesh's vertices
-/// \returns  the faces' points, if it has them, then edges' by their EdgeNumbers, then vertices'
+/// \returns  by PointNumbers
 /// \cost     linear in the corners of faces
 template <class Masks, class X>
 std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpness,
@@ -83,7 +104,8 @@ std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpne
     EdgeNumbers const edges(topology);
     std::vector<X> out;
     out.reserve(mesh.faces() + edges.size() + x.size());
-    if constexpr (Masks::kFacePoints) out = face_point;
+    for (std::uint32_t f = 0; f < mesh.faces(); ++f)
+        if (!Masks::kKeepsTriangles || mesh.face(f).size() != 3) out.push_back(face_point[f]);
     for (std::size_t e = 0; e < edges.size(); ++e) {
         HalfEdge const h = edges.first(e), other = topology.twin(h);
         X const &a = x[topology.vertex_of(topology.next(h))], &b = x[topology.vertex_of(h)];
@@ -117,7 +139,7 @@ std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpne
         if (!is_plain) sharpness.around(v, sharp);
         out.push_back(vertex_point<Masks>(is_plain ? plain : sharp, ring.size(), x[v], edge, face));
     }
-    if constexpr (Masks::kFacePoints) {
+    if constexpr (Masks::kSectorRules) {
         std::vector<std::pair<std::size_t, X>> moves; // all of the points as they are
         each_flat_ring<Masks>(
             topology, sharpness, edges, [&](FlatRing const& flat, auto const& id) {

@@ -3,7 +3,6 @@
 
 #include "emu/compute_shader.h"
 #include "pipeline/mesh/catmull_clark.h"
-#include "pipeline/mesh/weighted_sum.h"
 
 #include <map>
 
@@ -128,12 +127,7 @@ public:
                             ? new_point_of_kernels(t.point)
                             : Sum(t.point)) *
                        t.weight;
-            b.target.push_back(target);
-            for (WeightedSum::Term const& t : all.terms()) {
-                b.points.push_back(t.point);
-                b.weights.push_back(float(t.weight));
-            }
-            b.first.push_back(std::uint32_t(b.points.size()));
+            b.add(target, all);
         }
     }
 
@@ -188,18 +182,44 @@ private:
     std::map<std::uint32_t, Sum> blended_; // by new point
 };
 
+void refuse_buffer(std::uint64_t points)
+{
+    if (points > RWVectorBuffer::kMostVectors)
+        throw LimitError("points of the vertex buffer of subdivision", points,
+                         RWVectorBuffer::kMostVectors);
+}
+
 } // namespace
+
+void SubdivisionTables::Blended::add(std::uint32_t new_point, WeightedSum const& sum)
+{
+    target.push_back(new_point);
+    for (WeightedSum::Term const& t : sum.terms()) {
+        points.push_back(t.point);
+        weights.push_back(float(t.weight));
+    }
+    first.push_back(std::uint32_t(points.size()));
+}
+
+SubdivisionTables weighted_tables(std::span<WeightedSum const> points, std::uint32_t vertices,
+                                  std::uint32_t first)
+{
+    refuse_buffer(std::uint64_t(first) + vertices + points.size());
+    SubdivisionTables out;
+    out.edges = std::uint32_t(points.size()) - vertices;
+    out.vertices = vertices;
+    out.first = first;
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+        out.blended.add(out.first_face_point() + i, points[i]);
+    return out;
+}
 
 SubdivisionTables catmull_clark_tables(Topology const& topology, Sharpness const& sharpness,
                                        std::uint32_t first, bool only_quads)
 {
     ControlMesh const& mesh = topology.mesh();
     EdgeNumbers const edges(topology);
-    std::uint64_t const all =
-        std::uint64_t(first) + 2 * mesh.positions.size() + mesh.faces() + edges.size();
-    if (all > RWVectorBuffer::kMostVectors)
-        throw LimitError("points of the vertex buffer of subdivision", all,
-                         RWVectorBuffer::kMostVectors);
+    refuse_buffer(std::uint64_t(first) + 2 * mesh.positions.size() + mesh.faces() + edges.size());
     constexpr std::uint64_t kMostFaces = 46340; // its square is below 2^31
     for (std::uint32_t v = 0; v < mesh.positions.size(); ++v)
         if (topology.ring(v).size() > kMostFaces)

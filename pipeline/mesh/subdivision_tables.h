@@ -1,4 +1,4 @@
-// Tables of a step of Catmull-Clark subdivision: LOOP10 section 3, figure 2.
+// Tables of a step of subdivision: of Catmull-Clark's LOOP10 section 3, figure 2.
 //
 // One vertex buffer holds a mesh's vertices and, behind them, the new points in the order faces,
 // edges, vertices; of the next step these are the old vertices. Numbers in the tables are the
@@ -13,12 +13,14 @@
 // that stays where it is valence 0 and none: these are LOOP10's encodings, and sharp tags fit them.
 // What does not fit is `blended`, as sums of weighted points: points between two rules where a
 // sharpness ends in this step, edge points at triangles to be smoothed, and by Biermann's rules
-// those that lean to an end and those that are flattened.
+// those that lean to an end and those that are flattened. Of other schemes all new points are such
+// sums, HOLL10's computational entries, and the old faces have none.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "pipeline/mesh/sharpness.h"
+#include "pipeline/mesh/weighted_sum.h"
 
 namespace tessemu {
 
@@ -40,6 +42,8 @@ struct SubdivisionTables {
         std::vector<std::uint32_t> first{0}; ///< [row + 1]: where its terms begin
         std::vector<std::uint32_t> points;   ///< of each term
         std::vector<float> weights;          ///< of each term
+
+        void add(std::uint32_t new_point, WeightedSum const& sum);
     };
     Blended blended;
 
@@ -50,6 +54,13 @@ struct SubdivisionTables {
     /// Vectors of the buffer after the step.
     std::uint32_t buffer_size() const { return first_face_point() + new_points(); }
 };
+
+/// The tables of a step whose new points are all weighted sums.
+///
+/// \param points    of the old vertices by their numbers in the buffer
+/// \param vertices  old ones, whose new points are the last
+SubdivisionTables weighted_tables(std::span<WeightedSum const> points, std::uint32_t vertices,
+                                  std::uint32_t first);
 
 /// \param first      of the old vertices in the buffer: 0, or an earlier step's first_face_point()
 /// \param only_quads leaves face_offset_valence out: all faces are quads

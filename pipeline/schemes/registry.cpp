@@ -4,6 +4,7 @@
 #include "pipeline/mesh/join.h"
 #include "pipeline/mesh/manifold.h"
 #include "pipeline/mesh/sort_by_valence.h"
+#include "pipeline/mesh/triangulate.h"
 
 #include <algorithm>
 #include <charconv>
@@ -27,7 +28,10 @@ std::vector<std::unique_ptr<Scheme>> const& schemes()
         { Make make_stam; s.push_back(make_stam()); }
         { Make make_biseptic; s.push_back(make_biseptic()); }
         { Make make_bolz; s.push_back(make_bolz()); }
+        { Make make_tables_loop; s.push_back(make_tables_loop()); }
+        { Make make_pn_triangles; s.push_back(make_pn_triangles()); }
         { Make make_phong; s.push_back(make_phong()); }
+        { Make make_flat; s.push_back(make_flat()); }
         // clang-format on
         return s;
     }();
@@ -197,21 +201,23 @@ int steps_of(MeshRequirements const& t, MeshFacts const& m, int subdivide)
                                       : t.steps);
 }
 
-bool takes(MeshRequirements const& t, MeshFacts const& m, int subdivide)
+// \param cuts  faces into triangles where a scheme takes nothing else
+bool takes(MeshRequirements const& t, MeshFacts const& m, int subdivide, bool cuts)
 {
     if (m.boundary && !t.boundary) return false;
     if (m.edges > t.edges) return false;
     if (m.sides > t.edges && steps_of(t, m, subdivide) > 0) return false;
-    if (steps_of(t, m, subdivide) > 0) return t.quads; // which it makes of all faces
+    if (cuts && !t.quads) return true;
+    if (steps_of(t, m, subdivide) > 0 && t.quads) return true; // which it makes of all faces
     return !m.polygons && (t.quads || !m.quads) && (t.triangles || !m.triangles);
 }
 
-void refuse(SchemeInfo const& info, MeshFacts const& m, int subdivide)
+void refuse(SchemeInfo const& info, MeshFacts const& m, int subdivide, bool cuts)
 {
-    if (takes(info.takes, m, subdivide)) return;
+    if (takes(info.takes, m, subdivide, cuts)) return;
     std::string others;
     for (auto const& s : schemes())
-        if (takes(s->info().takes, m, subdivide))
+        if (takes(s->info().takes, m, subdivide, cuts))
             others += (others.empty() ? "" : ", ") + s->info().name;
     std::string const help = others.empty() ? "" : "; schemes that draw this mesh: " + others;
     auto const sides = [&](char const* good, char const* bad, std::size_t n, std::uint32_t first) {
@@ -220,12 +226,7 @@ void refuse(SchemeInfo const& info, MeshFacts const& m, int subdivide)
                                    ", the first is face " + std::to_string(first + 1) + help);
     };
     char const* const good = info.takes.quads ? "quads" : "triangles";
-    if (steps_of(info.takes, m, subdivide) > 0) {
-        if (!info.takes.quads)
-            throw MeshError(0, info.name + " draws " + good + " only: a step of subdivision makes" +
-                                   " quads of all " + std::to_string(m.faces) +
-                                   " faces, the first is face 1" + help);
-    } else {
+    if (steps_of(info.takes, m, subdivide) == 0 || !info.takes.quads) {
         if (!info.takes.triangles && m.triangles)
             sides(good, "triangles", m.triangles, m.first_triangle);
         if (!info.takes.quads && m.quads) sides(good, "quads", m.quads, m.first_quad);
@@ -296,7 +297,7 @@ void warn_of_tags(SchemeInfo const& info, RefinedMesh const& refined, std::vecto
     bool triangles = false;
     for (std::size_t f = 0; f < drawn.faces() && !triangles; ++f)
         triangles = drawn.face(f).size() == 3;
-    if (drawn.rules.smooth_triangles && triangles)
+    if (drawn.rules.smooth_triangles && triangles && !info.takes.step.keeps_triangles)
         out.push_back("triangles are drawn without the weights of smoothtriangles: a step of "
                       "subdivision has them");
 }
@@ -317,6 +318,9 @@ bool resolve_sort(SchemeInfo const& info, int steps, Parameters& parameters)
     if (steps == 0 && is_given && parameters.word(sort.name) != sort.words[0])
         throw Error(info.name + ": " + sort.name + " is '" + parameters.word(sort.name) +
                     "', and no step of subdivision is taken whose tables it would sort");
+    if (info.takes.step.keeps_triangles && is_given && parameters.word(sort.name) != sort.words[0])
+        throw Error(info.name + ": " + sort.name + " is '" + parameters.word(sort.name) +
+                    "', which sorts the tables of Catmull-Clark subdivision alone");
     if (steps == 0) return false;
     if (!is_given) parameters.set(sort.name, sort.words[0]);
     return parameters.word(sort.name) != sort.words[0];
@@ -348,6 +352,15 @@ SchemeOnMesh refine(SchemeInfo const& info, Scheme const* scheme, ControlMesh me
     if (scheme)
         scheme->set_rules(mesh, out.parameters,
                           [&](std::string const& w) { warn(out, options, {w}); });
+    if (!info.takes.quads && (!options.strict || !must_be_taken)) {
+        TriangulatedMesh cut = triangulate(std::move(mesh));
+        mesh = std::move(cut.mesh);
+        if (cut.cut_faces)
+            warn(out, options,
+                 {counted(cut.cut_faces, "face is", "faces are") +
+                  " cut into triangles by diagonals from the first vertex, for " + info.name +
+                  " draws nothing else: the first is face " + std::to_string(cut.first_cut + 1)});
+    }
     MeshFacts sides;
     for (std::size_t f = 0; f < mesh.faces(); ++f) {
         std::size_t const n = mesh.face(f).size();
@@ -357,8 +370,9 @@ SchemeOnMesh refine(SchemeInfo const& info, Scheme const* scheme, ControlMesh me
     }
     int const own = steps_of(info.takes, sides, 0), steps = own + options.subdivide;
     bool const sorts = resolve_sort(info, steps, out.parameters);
-    if (must_be_taken) refuse(info, facts_of(Topology(mesh)), options.subdivide); // before the work
-    if (sorts) mesh = sort_by_valence(mesh, info.takes.step(Topology(mesh), 0).tables);
+    if (must_be_taken) // before the work
+        refuse(info, facts_of(Topology(mesh)), options.subdivide, !options.strict);
+    if (sorts) mesh = sort_by_valence(mesh, info.takes.step(Topology(mesh)).tables);
     out.mesh = std::make_shared<RefinedMesh const>(std::move(mesh), steps, info.takes.step,
                                                    options.progress);
     RefinedMesh const& refined = *out.mesh;
@@ -387,6 +401,7 @@ SchemeOnMesh refine_for_no_scheme(RefinementStep step, ControlMesh mesh,
     none.name = "subdivide";
     none.takes.steps_with_polygons = 0;
     none.takes.step = step;
+    none.takes.quads = !step.keeps_triangles;
     return refine(none, nullptr, std::move(mesh), options, false);
 }
 

@@ -57,6 +57,7 @@ private:
 
 /// What meshes a scheme takes.
 struct MeshRequirements {
+    /// Without quads: other faces are cut into triangles, with a warning.
     bool quads = true, triangles = true, boundary = true;
     bool creases = false, corners = false; ///< honoured; otherwise drawn smooth, with a warning
     std::uint32_t edges = kAnyNumber;      ///< at a vertex, at most

@@ -13,7 +13,7 @@
 #pragma once
 
 #include "emu/texture.h"
-#include "shaders_cpp/records.h"
+#include "shaders_cpp/table_term.h"
 
 #include <algorithm>
 
@@ -37,14 +37,6 @@ struct TableLayout {
     constexpr int x(int table) const { return kSide * (table % columns); }
     constexpr int y(int table) const { return kSide * (table / columns); }
 };
-
-/// sum + weight * point. A routine: whatever place the control point has in a patch's list, a
-/// compiler fuses it alike.
-template <class T> float3<T> add_term(float3<T> const& sum, T const& weight, float3<T> const& point)
-{
-    Routine<T> const here("table_term");
-    return sum + weight * point;
-}
 
 namespace detail {
 /// Control point i of a patch's constants, four floats each.

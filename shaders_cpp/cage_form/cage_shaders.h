@@ -58,13 +58,16 @@ template <TessellatorDomain kDomain_> struct CageHullShader {
     template <class T> using Points = ControlPoints<NormalVertex<T>>;
 
     TessFactorRule factors;
+    bool face_normals = false; ///< of all corners, in place of their vertices'
 
     int control_points() const { return kSides; }
     int patch_constants() const { return 0; }
     template <class T>
     NormalVertex<T> control_point(PatchInput, Points<T> const& in, int_of<T> id) const
     {
-        return in[id];
+        NormalVertex<T> vertex = in[id];
+        if (face_normals) vertex.normal = face_normal<T>(in);
+        return vertex;
     }
     template <class T>
     ControlVertex<T> patch_constant(PatchInput, Points<T> const&, Points<T> const&, int_of<T>) const
@@ -76,6 +79,16 @@ template <TessellatorDomain kDomain_> struct CageHullShader {
                                   ControlPoints<ControlVertex<T>> const&) const
     {
         return cage_factors<kDomain, T>(factors, [&](int k) { return out[k].position; });
+    }
+
+private:
+    /// Along twice the face's area; z where it has none.
+    template <class T> static float3<T> face_normal(Points<T> const& in)
+    {
+        using V = float3<T>;
+        V const a = in[0].position, b = in[1].position, c = in[2].position,
+                d = in[3 % kSides].position;
+        return unit_or(cross(V(c - a), V(d - b)), [] { return V(T(0), T(0), T(1)); });
     }
 };
 

@@ -17,7 +17,7 @@ namespace {
 class MixedLevels final : public PatchMesh {
 public:
     MixedLevels(ControlMesh const& mesh, int coarse_factor)
-        : PatchMesh(std::make_shared<RefinedMesh const>(mesh, 0, nullptr)),
+        : PatchMesh(std::make_shared<RefinedMesh const>(mesh, 0, catmull_clark_step)),
           coarse_factor_(coarse_factor)
     {
         ControlMesh half[2] = {mesh, mesh};

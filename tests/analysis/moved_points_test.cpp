@@ -20,7 +20,7 @@ namespace {
 // One patch that no tessellator makes: a saddle over the unit square.
 class Sheet final : public PatchMesh {
 public:
-    Sheet() : PatchMesh(std::make_shared<RefinedMesh const>(square(), 0, nullptr)) {}
+    Sheet() : PatchMesh(std::make_shared<RefinedMesh const>(square(), 0, catmull_clark_step)) {}
 
     CommandList commands(SurfaceSettings const& s) const override
     {

@@ -97,8 +97,8 @@ points_of_face(LimitSurface const& limit, ControlMesh const& base, std::uint32_t
     cells = 1 << digits;
     std::map<std::array<int, 3>, std::uint32_t> out;
     std::size_t const of_sub = std::size_t(1) << (2 * digits);
-    for (std::size_t q = limit.first_quad(face); q < limit.first_quad(face + 1); ++q) {
-        std::size_t const number = q - limit.first_quad(face);
+    for (std::size_t q = limit.first_face(face); q < limit.first_face(face + 1); ++q) {
+        std::size_t const number = q - limit.first_face(face);
         Corners c{{{0, 0}, {cells, 0}, {cells, cells}, {0, cells}}};
         for (int d = digits - 1; d >= 0; --d) {
             std::size_t const i = number >> (2 * d) & 3;
@@ -108,7 +108,7 @@ points_of_face(LimitSurface const& limit, ControlMesh const& base, std::uint32_t
             c = {c[i], middle(i, i + 1), middle(i, i + 2), middle(i, i + 3)};
         }
         for (std::size_t k = 0; k < 4; ++k)
-            out[{int(number / of_sub), c[k][0], c[k][1]}] = limit.quads()[q][k];
+            out[{int(number / of_sub), c[k][0], c[k][1]}] = limit.face(q)[k];
     }
     return out;
 }
@@ -223,7 +223,7 @@ TEST_P(RefinedCage, HasOpenSubdivsPoints)
         Topology const topology(mesh);
         Sharpness const sharpness(topology);
         x = refined_points<CatmullClark, Vec>(topology, sharpness, x);
-        ControlMesh fine = catmull_clark_mesh(topology, sharpness, x);
+        ControlMesh fine = split_mesh(topology, sharpness, x, false);
         mesh = std::move(fine);
     }
     std::istringstream in(test::read_text(test::golden("limit/" + name + ".refined.txt")));
@@ -429,7 +429,8 @@ TEST(TaggedLimit, AConcaveCornerOfAFlatSheetStaysInItAndFacesOutwards)
         Topology const topology(sheet);
         LimitSurface const limit(topology, 4);
         double area = 0;
-        for (LimitSurface::Quad const& q : limit.quads()) {
+        for (std::size_t f = 0; f < limit.faces(); ++f) {
+            auto const q = limit.face(f);
             auto const at = [&](int k) { return limit.positions()[q[std::size_t(k)]]; };
             double const twice = cross(at(2) - at(0), at(3) - at(1)).z;
             EXPECT_GT(twice, 0) << "folded";

@@ -7,6 +7,7 @@
 #include "io/model.h"
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/cages.h"
+#include "tests/support/edges.h"
 #include "tests/support/files.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/shapes.h"
@@ -106,6 +107,72 @@ TEST(Watertight, EverySchemePassesPlainDisplacedAnimatedAndAdaptive)
         c.settings.parity = 0.01f;
         expect_clean(c.check(), name + ", moved by parity");
     }
+}
+
+// Two closed cages of triangles: the spindle, and one of equal triangles.
+std::vector<ControlMesh> triangle_cages()
+{
+    return {load_model("spindle").mesh, test::mesh_from(nlohmann::json::parse(test::read_text(
+                                            test::golden("loop09/icosahedron.json"))))};
+}
+
+TEST(Watertight, SubstitutesPassInEveryPartitioningUnderEveryContraction)
+{
+    for (char const* scheme : {"pn-triangles", "phong", "flat"})
+        for (ControlMesh const& cage : triangle_cages()) {
+            Case c(cage, scheme);
+            c.settings.rays = 2000;
+            FrameSettings& f = c.settings.frame;
+            std::size_t n = 0;
+            for (Machine const& machine : test::contraction_policies())
+                for (Partitioning p : {Partitioning::Integer, Partitioning::Pow2,
+                                       Partitioning::FractionalOdd, Partitioning::FractionalEven}) {
+                    if (!test::meets_case(machine, std::size_t(p), 4)) continue;
+                    f.machine = machine;
+                    f.partitioning = p;
+                    f.adaptive = {}; // uniform, then every edge its own factor
+                    expect_clean(c.check(), scheme + std::string(", uniform"));
+                    f.adaptive = {AdaptiveFactors::Kind::Pixels, 6};
+                    expect_clean(c.check(), scheme + std::string(", adaptive"));
+                    ++n;
+                }
+            EXPECT_GE(n, 10u);
+        }
+}
+
+// With its face's normal at all three corners a triangle lies in all three tangent planes, and every
+// substitute is flat: shading breaks at each edge, positions differ by a rounding at most, and those
+// of flat, which does not look at normals, not at all.
+TEST(Watertight, OfFacesNormalsSubstitutesAreFacetsThatBreakTheNormalVerdict)
+{
+    for (std::string const scheme : {"pn-triangles", "phong", "flat"})
+        for (ControlMesh const& cage : triangle_cages()) {
+            SchemeOnMesh const on =
+                build_scheme(find_scheme(scheme), cage, {.set = {{"normals", "faces"}}});
+            WatertightSettings settings;
+            settings.frame.tess_factor = 7.3f;
+            settings.frame.camera = frame_points(cage.positions, {0.4f, 0.3f, 1}, 1);
+            settings.rays = 0;
+            auto const verdicts = check_watertight(*on.patches, settings, ThreadPool());
+            EXPECT_EQ(verdicts[0].verdict, Verdict::Pass) << scheme; // topology
+            EXPECT_EQ(verdicts[2].verdict, Verdict::Fail) << scheme; // normal
+            EXPECT_EQ(verdicts[2].failures, verdicts[2].checked) << scheme;
+            if (scheme != "pn-triangles") { // which may round either way
+                EXPECT_EQ(verdicts[1].verdict, scheme == "flat" ? Verdict::Pass : Verdict::Fail)
+                    << scheme;
+            }
+            // 16 units of 2^-24 of the largest coordinate, 2 here: more than any sum rounds by.
+            visit_surface(*on.patches, settings.frame, ThreadPool(), [&](SurfacePatch const& p) {
+                auto const face = cage.face(p.place().face);
+                glm::dvec3 const a(cage.positions[face[0]]), b(cage.positions[face[1]]),
+                    c(cage.positions[face[2]]), normal = normalize(cross(b - a, c - a));
+                for (std::size_t i = 0; i < p.points(); ++i) {
+                    EXPECT_NEAR(dot(glm::dvec3(p.vertex(i).position) - a, normal), 0, 0x1p-19)
+                        << scheme;
+                    EXPECT_NEAR(dot(glm::dvec3(p.vertex(i).normal), normal), 1, 1e-6) << scheme;
+                }
+            });
+        }
 }
 
 TEST(Watertight, OpenSurfacesSkipWhatDoesNotApply)
@@ -332,14 +399,19 @@ constexpr Expected kMatrix[] = {
     {Mistake::TopLeft, false, 0, "PPP-FP"},
 };
 
-// Of two-stage forms a vertex belongs to all patches, which have no weights of their own; phong has
-// no weights at all, and edges that are no cubics. Those mistakes are refused.
+// Of two-stage forms a vertex belongs to all patches, which have no weights of their own; cage forms
+// have no weights at all, and no edges of the stencil forms' kind. Those mistakes are refused.
 bool can_have(std::string const& scheme, Mistake mistake)
 {
+    static std::set<Mistake> const of_cage_form{Mistake::Order, Mistake::Contraction,
+                                                Mistake::Normals, Mistake::Weights};
     static std::map<std::string, std::set<Mistake>> const without{
         {"gregory-two-stage", {Mistake::Weights}},
         {"pm", {Mistake::Weights}},
-        {"phong", {Mistake::Order, Mistake::Contraction, Mistake::Normals, Mistake::Weights}},
+        {"pn-triangles", of_cage_form},
+        {"phong", of_cage_form},
+        {"flat", of_cage_form},
+        {"tables-loop", of_cage_form},
         {"bolz",
          {Mistake::Order, Mistake::Contraction, Mistake::Factors, Mistake::Normals, Mistake::Fold,
           Mistake::Weights}}};

@@ -65,7 +65,7 @@ TEST(BiermannRules, StepsAgreeWithGoldenDataInDouble)
             Sharpness const sharpness(topology);
             x = refined_points<CatmullClark, Vec>(topology, sharpness, x);
             EXPECT_LE(test::worst_distance(x, g[level]), 1e-12) << level;
-            ControlMesh fine = catmull_clark_mesh(topology, sharpness, x);
+            ControlMesh fine = split_mesh(topology, sharpness, x, false);
             EXPECT_EQ(fine.concave.size(), mesh.concave.size());
             mesh = std::move(fine);
         }
@@ -333,7 +333,7 @@ TEST(BiermannRules, ARingIsRefinedAsItsMeshIs)
         Topology const first(cage);
         std::vector<Vec> x(cage.positions.begin(), cage.positions.end());
         x = refined_points<CatmullClark, Vec>(first, Sharpness(first), x);
-        ControlMesh const mesh = catmull_clark_mesh(first, Sharpness(first), x);
+        ControlMesh const mesh = split_mesh(first, Sharpness(first), x, false);
         Topology const topology(mesh);
         Sharpness const sharpness(topology);
         std::vector<Vec> const next = refined_points<CatmullClark, Vec>(topology, sharpness, x);
@@ -401,7 +401,7 @@ TEST(BiermannRules, KernelsAgreeWithTheMasksWithinRounding)
                 n = std::max(n, double(topology.valence(v)));
             Sharpness const sharpness(topology);
             x = refined_points<CatmullClark, Vec>(topology, sharpness, x);
-            ControlMesh next = catmull_clark_mesh(topology, sharpness, x);
+            ControlMesh next = split_mesh(topology, sharpness, x, false);
             RefinedMesh const m(mesh, steps, catmull_clark_step);
             SubdivisionTables const& t = m.tables().back();
             std::vector<char> is_target(t.buffer_size());
@@ -574,8 +574,8 @@ public:
         mark_concave_sectors(mesh);
         warn("a warning");
     }
-    std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const>,
-                                     Parameters const&, BuildServices const&) const override
+    std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const>, Parameters const&,
+                                     BuildServices const&) const override
     {
         return nullptr;
     }

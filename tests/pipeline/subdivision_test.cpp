@@ -241,7 +241,7 @@ TEST(SubdivisionKernels, AgreeWithTheMasksWithinRounding)
             Topology const topology(coarse);
             Sharpness const sharpness(topology);
             x = refined_points<CatmullClark, Vec>(topology, sharpness, x);
-            ControlMesh next = catmull_clark_mesh(topology, sharpness, x);
+            ControlMesh next = split_mesh(topology, sharpness, x, false);
             RefinedMesh const m(mesh, steps, catmull_clark_step);
             std::vector<glm::vec3> const drawn = drawn_mesh(m, {}, ThreadPool(1)).mesh.positions;
             ASSERT_EQ(drawn.size(), x.size());

@@ -161,7 +161,9 @@ INSTANTIATE_TEST_SUITE_P(
                     SchemeAndModel{"gregory-two-stage", "bigguy"},
                     SchemeAndModel{"gregory-two-stage", "monsterfrog"},
                     SchemeAndModel{"gregory-two-stage", "suzanne"}, SchemeAndModel{"pm", "bigguy"},
-                    SchemeAndModel{"pm", "monsterfrog"}, SchemeAndModel{"phong", "knight_tri_1k"}),
+                    SchemeAndModel{"pm", "monsterfrog"}, SchemeAndModel{"phong", "knight_tri_1k"},
+                    SchemeAndModel{"pn-triangles", "knight_tri_1k"},
+                    SchemeAndModel{"flat", "knight_tri_1k"}),
     [](auto const& test) {
         std::string name = std::string(test.param.first) + "_" + test.param.second;
         std::replace(name.begin(), name.end(), '-', '_');

@@ -70,9 +70,9 @@ TEST(WidePatches, SharedPointsHaveEqualBitsUnderEveryContraction)
                 }
             ++drawn;
         }
-    // Both Gregory forms, Stam, biseptic and tables, ACC where all faces are quads, and where
-    // nothing is wide Pm and, of triangles alone, Phong.
-    EXPECT_EQ(drawn, 5 * 7 + 5 + 1 + 1);
+    // Both Gregory forms, Stam, biseptic, both kinds of tables, PN triangles, Phong and flat ones,
+    // ACC where all faces are quads, and where nothing is wide Pm.
+    EXPECT_EQ(drawn, 9 * 7 + 5 + 1);
 }
 
 TEST(WidePatches, AWarningCountsThem)
@@ -171,14 +171,16 @@ TEST(WidePatches, ALimitThatStaysIsNamed)
         EXPECT_EQ(e.face, 0u);
         EXPECT_STREQ(e.what(), "pm draws vertices of at most 15 edges: vertex 1 of face 1 has 16; "
                                "schemes that draw this mesh: gregory-stencil, gregory-two-stage, "
-                               "acc, stam, biseptic, bolz");
+                               "acc, stam, biseptic, bolz, tables-loop, pn-triangles, "
+                               "phong, flat");
     }
     try {
         build_scheme(find_scheme("gregory-stencil"), test::uv_sphere(2049, 3).mesh);
         FAIL();
     } catch (MeshError const& e) {
         EXPECT_STREQ(e.what(), "gregory-stencil draws vertices of at most 2048 edges: vertex 1 of "
-                               "face 1 has 2049");
+                               "face 1 has 2049; schemes that draw this mesh: "
+                               "pn-triangles, phong, flat");
     }
     // A step of subdivision makes a vertex of each face.
     try {

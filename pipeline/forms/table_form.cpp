@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/forms/table_form.h"
+
+#include "pipeline/commands/displacement.h"
+#include "shaders_cpp/bolz/patch_constants_shader.h"
+#include "shaders_cpp/pass_through.h"
+#include "shaders_cpp/tables/table_patch.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tessemu {
+
+namespace {
+
+// n x n triangles, counter-clockwise in (u, v) as the tessellator's corners are.
+std::shared_ptr<DomainPoints const> triangle_pattern(int n)
+{
+    auto out = std::make_shared<DomainPoints>();
+    std::vector<std::uint32_t> first;
+    for (int j = 0; j <= n; ++j) {
+        first.push_back(std::uint32_t(out->u.size()));
+        for (int i = 0; i + j <= n; ++i) {
+            out->patch.u.push_back(std::uint32_t(i) * (kFixedOne / std::uint32_t(n)));
+            out->patch.v.push_back(std::uint32_t(j) * (kFixedOne / std::uint32_t(n)));
+            out->u.push_back(float(i) / float(n));
+            out->v.push_back(float(j) / float(n));
+        }
+    }
+    auto const at = [&](int i, int j) { return first[std::size_t(j)] + std::uint32_t(i); };
+    auto& indices = out->patch.indices;
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i + j < n; ++i) {
+            indices.insert(indices.end(), {at(i, j), at(i + 1, j), at(i, j + 1)});
+            if (i + j + 1 < n)
+                indices.insert(indices.end(), {at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    return out;
+}
+
+// A patch's corner is regular with six faces, or three at a boundary.
+PatchKind kind_of(LocalMesh const& type)
+{
+    ControlMesh const mesh = type.mesh();
+    Topology const topology(mesh);
+    bool is_regular = true, is_tagged = !type.creases.empty() || !type.corners.empty();
+    for (std::uint32_t v = 0; v < std::uint32_t(type.sides()); ++v) {
+        is_tagged = is_tagged || topology.is_boundary(v);
+        is_regular = is_regular && topology.ring(v).size() == 6;
+    }
+    if (is_tagged) return {"crease or boundary", PatchClass::Crease};
+    return is_regular ? PatchKind{"regular triangle", PatchClass::Triangle}
+                      : PatchKind{"irregular triangle", PatchClass::Other};
+}
+
+} // namespace
+
+std::vector<SchemeParameter> TableForm::parameters()
+{
+    return {{"mesher",
+             "points of a patch: Direct3D 11's, linear between samples, or those of a refinement "
+             "pattern, all of them samples",
+             0,
+             0,
+             0,
+             {"tessellator", "pattern"}},
+            {"normals",
+             "summed by the weights of positions (subdivision shading), or of the surface, from "
+             "tables of tangents",
+             0,
+             0,
+             0,
+             {"shading", "tangents"}},
+            {"tables",
+             "weights of shared points: made equal (BOLZ03 2.1.1), or as a generator in single "
+             "precision makes them for each patch",
+             0,
+             0,
+             0,
+             {"enforced", "unenforced"}}};
+}
+
+TableForm::TableForm(std::shared_ptr<RefinedMesh const> refined, MeshTables::Make const& make,
+                     Parameters const& parameters, BuildServices const& services)
+    : PatchMesh(std::move(refined)),
+      mesher_(parameters.word("mesher") == "pattern" ? Mesher::Pattern : Mesher::Tessellator),
+      normals_(parameters.word("normals") == "tangents" ? Normals::Tangents : Normals::Shading),
+      tables_(mesh().topology(), make,
+              {.enforced = parameters.word("tables") == "enforced",
+               .rings = mesh().mesh().rules.crease_method == CreaseMethod::Chaikin ? 2 : 1},
+              services.progress),
+      sectors_(entries(tables_.vertices())),
+      wholes_(entries(tables_.whole_vertices()))
+{
+    for (MeshTables::Point const& p : tables_.points()) {
+        points_.push_back(p.vertex);
+        points_.push_back(p.column);
+    }
+    add_kinds();
+    if (normals_ == Normals::Tangents) add_corner_terms();
+}
+
+std::vector<std::uint32_t> TableForm::entries(std::span<TableVertex const> vertices)
+{
+    std::vector<std::uint32_t> out;
+    for (TableVertex const& v : vertices)
+        out.insert(out.end(), {v.vertex, v.first_ring, 2 * v.ring + (v.is_open ? 1u : 0u)});
+    return out;
+}
+
+HalfEdge TableForm::half_edge(MeshTables::Patch const& p, int corner) const
+{
+    ControlMesh const& m = mesh().mesh();
+    return m.face_start[p.face] + HalfEdge(corner + p.rotation) % HalfEdge(m.face(p.face).size());
+}
+
+// Tangents of a sector of a vertex, of the first patch that has it at a corner.
+void TableForm::add_corner_terms()
+{
+    std::vector<std::pair<MeshTables::Patch const*, int>> owner(tables_.sectors());
+    for (MeshTables::Patch const& p : tables_.patches())
+        for (int k = 0; k < 3; ++k) {
+            auto& of = owner[tables_.sector(half_edge(p, k))];
+            if (!of.first) of = {&p, k};
+        }
+    for (auto const& [p, corner] : owner) {
+        corners_.insert(corners_.end(), {std::uint32_t(corner_terms_.size()),
+                                         std::uint32_t(CornerNormalShader::Faces::None), 0u});
+        TypeOfTables const& t = tables_.types()[p->type];
+        auto const samples = std::size_t(t.grid.samples());
+        auto const at = std::size_t(t.grid.on_side(corner, 0));
+        for (MeshTables::Point const& x :
+             tables_.points().subspan(p->first_point, std::size_t(t.points))) {
+            float const a = t.tangents[0][x.column * samples + at],
+                        b = t.tangents[1][x.column * samples + at];
+            if (a == 0 && b == 0) continue;
+            corner_terms_.push_back(tables_.vertices()[x.vertex].vertex);
+            corner_weights_.insert(corner_weights_.end(), {a, b});
+        }
+    }
+    corners_.insert(corners_.end(), {std::uint32_t(corner_terms_.size()), 0u, 0u});
+}
+
+std::span<float const> TableForm::add_corner_normals(CommandList& list,
+                                                     VertexSource const& positions,
+                                                     Machine const& machine) const
+{
+    std::size_t const corners = tables_.sectors();
+    auto const normals = std::make_shared<std::vector<float>>(3 * corners);
+    list.memory.push_back(normals);
+    CornerNormalShader cs;
+    cs.corners = {corners_, 0, "corners"};
+    cs.vertices = {corner_terms_, 1, "corner_vertices"};
+    cs.weights = {corner_weights_, 2, "corner_weights"};
+    cs.positions = {positions.floats, 3, "positions"};
+    cs.faces = {{{}, 4, "pole_normals"}};
+    cs.normals = {*normals, 5, "corner_normals"};
+    cs.stride = positions.stride;
+    list.commands.emplace_back(
+        Dispatch{"corner normals", bind_compute_shader(cs, machine), groups_for(corners, 64)});
+    return *normals;
+}
+
+void TableForm::add_kinds()
+{
+    std::vector<std::uint32_t> first_entry;
+    std::vector<std::size_t> kind_of_type;
+    for (TypeOfTables const& t : tables_.types()) {
+        constexpr std::uint64_t kMost = 0x7fffffff;
+        if (entries_of_tables_.size() + t.position.size() > kMost)
+            throw LimitError("entries of basis-function tables",
+                             entries_of_tables_.size() + t.position.size(), kMost);
+        first_entry.push_back(std::uint32_t(entries_of_tables_.size()));
+        entries_of_tables_.insert(entries_of_tables_.end(), t.position.begin(), t.position.end());
+        if (normals_ == Normals::Tangents)
+            for (int i : {0, 1})
+                entries_of_tangents_[i].insert(entries_of_tangents_[i].end(), t.tangents[i].begin(),
+                                               t.tangents[i].end());
+        PatchKind kind = kind_of(t.type);
+        auto const same = std::find_if(kinds_.begin(), kinds_.end(),
+                                       [&](Kind const& k) { return k.kind.name == kind.name; });
+        kind_of_type.push_back(std::size_t(same - kinds_.begin()));
+        if (same == kinds_.end()) kinds_.push_back({std::move(kind), {}, {}, {}, {}, {}});
+    }
+    std::vector<char> const hidden = hidden_faces(mesh(), warnings_);
+    for (MeshTables::Patch const& p : tables_.patches()) {
+        if (hidden[p.face]) continue;
+        Kind& kind = kinds_[kind_of_type[p.type]];
+        kind.places.push_back(mesh().place(p.face, p.rotation));
+        kind.patches.insert(
+            kind.patches.end(),
+            {p.first_point, std::uint32_t(tables_.types()[p.type].points), first_entry[p.type]});
+        kind.types.push_back(p.type);
+        auto const face = mesh().mesh().face(p.face);
+        for (int k = 0; k < int(face.size()); ++k) {
+            HalfEdge const h = half_edge(p, k);
+            kind.corners.push_back(mesh().topology().vertex_of(h));
+            kind.sectors.push_back(tables_.sector(h));
+        }
+    }
+    std::erase_if(kinds_, [](Kind const& k) { return k.places.empty(); });
+}
+
+CommandList TableForm::commands(SurfaceSettings const& s) const
+{
+    CommandList list;
+    if (kinds_.empty()) return list;
+    VertexSource const positions = add_vertices(list, mesh(), s);
+    auto const vertices = std::make_shared<std::vector<float>>(
+        tables_.vertices().size() * std::size_t(TableVerticesShader::kFloats));
+    list.memory.push_back(vertices);
+    TableVerticesShader cs;
+    // Displaced, both sides of a crease have to move along one normal.
+    cs.entries = {s.displacement ? wholes_ : sectors_, 0, "vertex_entries"};
+    cs.rings = {tables_.rings(), 1, "rings"};
+    cs.positions = {positions.floats, 2, "positions"};
+    cs.vertices = {*vertices, 3, "table_vertices"};
+    cs.stride = positions.stride;
+    list.commands.emplace_back(Dispatch{"vertex normals", bind_compute_shader(cs, s.machine),
+                                        groups_for(tables_.vertices().size(), 64)});
+    TriangleSamples const samples{1 << MeshTables::kSteps};
+    std::shared_ptr<DomainPoints const> pattern;
+    auto const pattern_vertices = std::make_shared<std::vector<float>>();
+    if (mesher_ == Mesher::Pattern) {
+        if (s.adaptive_rule.kind != TessFactorRule::Kind::Uniform)
+            throw Error("mesher=pattern refines every patch alike: it takes no adaptive factors");
+        if (s.tess_factor > float(samples.segments))
+            throw Error("mesher=pattern: " + std::to_string(int(std::ceil(s.tess_factor))) +
+                        " segments along an edge of a patch, its tables have " +
+                        std::to_string(samples.segments) +
+                        ": a step of subdivision before it (--subdivide) doubles them");
+        int n = 1;
+        while (float(n) < s.tess_factor) n *= 2;
+        pattern = triangle_pattern(n);
+        for (std::size_t i = 0; i < pattern->u.size(); ++i)
+            pattern_vertices->insert(pattern_vertices->end(), {pattern->u[i], pattern->v[i]});
+        list.memory.push_back(pattern_vertices);
+    }
+    // Displaced, both sides of a crease have to move along one normal, which tangents do not give.
+    bool const by_tangents =
+        normals_ == Normals::Tangents && !(s.displacement && tables_.has_sharp_edges());
+    std::span<float const> corner_normals;
+    if (by_tangents) corner_normals = add_corner_normals(list, positions, s.machine);
+    TableGrid const grid{3, samples.segments};
+    for (Kind const& k : kinds_) {
+        TableBuffers buffers;
+        buffers.patches = {k.patches, 0, "patches"};
+        buffers.points = {points_, 1, "patch_points"};
+        buffers.vertices = {*vertices, 2, "table_vertices"};
+        buffers.tables = {entries_of_tables_, 3, "tables"};
+        buffers.samples = grid.samples();
+        if (!by_tangents) {
+            add_draw(list, k, TablePatch{buffers}, positions, pattern, *pattern_vertices, s);
+            continue;
+        }
+        TangentTablePatch patch;
+        patch.buffers = buffers;
+        patch.tangents = {Buffer<float>{entries_of_tangents_[0], 4, "tangent_tables_0"},
+                          Buffer<float>{entries_of_tangents_[1], 5, "tangent_tables_1"}};
+        patch.corners = {k.sectors, 6, "patch_corners"};
+        patch.corner_normals = {corner_normals, 7, "corner_normals"};
+        for (int c = 0; c < grid.sides; ++c)
+            patch.corner_samples[std::size_t(c)] = grid.on_side(c, 0);
+        add_draw(list, k, patch, positions, pattern, *pattern_vertices, s);
+    }
+    list.memory.push_back(s.pose);
+    return list;
+}
+
+template <class Patch>
+void TableForm::add_draw(CommandList& list, Kind const& k, Patch const& patch,
+                         VertexSource const& positions,
+                         std::shared_ptr<DomainPoints const> const& pattern,
+                         std::span<float const> pattern_vertices, SurfaceSettings const& s) const
+{
+    TriangleSamples const samples{1 << MeshTables::kSteps};
+    if (!pattern) {
+        add_patch_draw(
+            list, mesh(),
+            {k.kind, positions, 3, k.corners, k.places,
+             bind_vertex_shader(PassThroughVertexShader{}, s.machine),
+             bind_hull_shader(TableHullShader<TessellatorDomain::Tri>{s.factor_rule()}, s.machine),
+             bind_domain_shader(TableTriangleDomainShader<Patch>{patch, samples}, s.machine)},
+            s);
+        return;
+    }
+    Draw out;
+    out.name = k.kind.name;
+    out.kind = k.kind;
+    out.patches = k.places;
+    out.grid = pattern;
+    SurfaceEpilog const epilog = make_surface_epilog(mesh().base(), k.places, s);
+    list.memory.push_back(epilog.memory);
+    std::visit(
+        [&](auto const& e) {
+            using Shader = TableTriangleVertexShader<Patch, std::remove_cvref_t<decltype(e)>>;
+            out.pipeline.vertex_shader = bind_vertex_shader(Shader{patch, samples, e}, s.machine);
+        },
+        epilog.shader);
+    out.call.topology = PrimitiveTopology::TriangleList;
+    out.call.set_vertices(pattern_vertices, 2);
+    out.call.indices = std::span<std::uint32_t const>(pattern->patch.indices);
+    out.call.instance_count = std::uint32_t(k.places.size());
+    list.commands.emplace_back(std::move(out));
+}
+
+std::vector<PatchCount> TableForm::patch_counts() const
+{
+    std::vector<PatchCount> out;
+    for (Kind const& k : kinds_) {
+        PatchCount c{k.kind, k.places.size(), 0, INT32_MAX, 0};
+        std::vector<std::uint32_t> types = k.types;
+        std::sort(types.begin(), types.end());
+        types.erase(std::unique(types.begin(), types.end()), types.end());
+        c.types = types.size();
+        for (std::uint32_t t : types) {
+            c.min_inputs = std::min(c.min_inputs, tables_.types()[t].points);
+            c.max_inputs = std::max(c.max_inputs, tables_.types()[t].points);
+        }
+        out.push_back(c);
+    }
+    return out;
+}
+
+} // namespace tessemu

@@ -1,0 +1,285 @@
+// A patch of a subdivision surface from tables of basis functions (HOLL10 2C).
+//
+//     p(u,v) = sum_i B_i(u,v) p_i,   n(u,v) = sum_i B_i(u,v) n_i / |...|
+//
+// over the vertices of the patch and around it: positions and normals of the mesh after the initial
+// step, summed by the same weights (subdivision shading with one normalisation). They come from
+// buffers by SV_PrimitiveID, not as control points: a patch may have more than 32.
+//
+// Shared points have equal bits from both sides under any contraction: weights on a side are equal
+// in both patches' tables, vertices come in one order for the whole mesh, and those that only one
+// patch has weigh 0 there.
+//
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "emu/domain_shader.h"
+#include "emu/hull_shader.h"
+#include "emu/vertex_shader.h"
+#include "shaders_cpp/cage_form/cage_factors.h"
+#include "shaders_cpp/table_term.h"
+#include "shaders_cpp/tables/table_vertices_shader.h"
+
+namespace tessemu {
+
+/// Where a point lies among the samples of a table: three of them with weights, or one.
+template <class T, int n> struct TablePlace {
+    int_of<T> sample[n];
+    T weight[n]; ///< of one sample: 1
+};
+
+/// Samples of a triangle's tables, row after row of v (TableGrid).
+struct TriangleSamples {
+    int segments = 0;
+
+    /// A multiple of 1/segments.
+    template <class T> TablePlace<T, 1> at(DomainInput<T> const& in) const
+    {
+        T const n = T(float(segments));
+        return {{index<T>(T(in.u * n), T(in.v * n))}, {T(1)}};
+    }
+    /// Any: linear between the three samples around, so on a side between two of them. All of it is
+    /// exact: u and v are multiples of 2^-16.
+    ///
+    /// \cost  2 mul, 7 add, 3 comparisons
+    template <class T> TablePlace<T, 3> between(DomainInput<T> const& in) const
+    {
+        using Int = int_of<T>;
+        T const n = T(float(segments)), last = n - T(1);
+        T const x = in.u * n, y = in.v * n;
+        T const i = min(floor(x), last), j = min(floor(y), last);
+        T const fx = x - i, fy = y - j, sum = fx + fy;
+        mask_of<T> const upper = sum > T(1);
+        Int const first = index<T>(i, j), right = first + Int(1),
+                  above = first + Int(segments + 1) - whole<T>(j);
+        T const gx = T(1) - fx, gy = T(1) - fy, rest = T(1) - sum;
+        return {{select(upper, above + Int(1), first), right, above},
+                {select(upper, T(-rest), rest), select(upper, gy, fx), select(upper, gx, fy)}};
+    }
+
+private:
+    /// Of a whole number from 0 to 2^23 - 1.
+    template <class T> static int_of<T> whole(T const& x)
+    {
+        return asuint(T(x + T(0x1p23f))) & int_of<T>(0x7fffff);
+    }
+    template <class T> int_of<T> index(T const& i, T const& j) const
+    {
+        using Int = int_of<T>;
+        Int const column = whole<T>(i), row = whole<T>(j);
+        return column + row * Int(segments + 1) - ((row * (row - Int(1))) >> Int(1));
+    }
+};
+
+/// What patches read.
+struct TableBuffers {
+    Buffer<std::uint32_t> patches; ///< [patch][3]: its first point, points, the first table entry
+    Buffer<std::uint32_t> points;  ///< [point][2]: vertex; column of the tables
+    Buffer<float> vertices;        ///< [vertex][TableVerticesShader::kFloats]
+    Buffer<float> tables;          ///< [type][column][sample]
+    int samples = 0;               ///< of a table
+
+    std::vector<ResourceInfo> resources() const
+    {
+        return {patches.info(), points.info(), vertices.info(), tables.info()};
+    }
+
+    /// work(vertex, where the point's table begins) for each point of a patch.
+    template <class T, class Work> void for_each_point(std::int32_t patch, Work const& work) const
+    {
+        auto const word = [&](int k) { return load<T>(patches, 3 * patch + k); };
+        std::int32_t const first = word(0), count = word(1), table = word(2);
+        for (int k : loop<T>(count)) {
+            std::int32_t const vertex = load<T>(points, 2 * (first + k)),
+                               column = load<T>(points, 2 * (first + k) + 1);
+            work(vertex, int_of<T>(table + column * samples));
+        }
+    }
+    template <class T, int n>
+    T weight_at(Buffer<float> const& of, int_of<T> const& table,
+                TablePlace<T, n> const& place) const
+    {
+        auto const at = [&](int i) -> T { return load<T>(of, table + place.sample[i]); };
+        if constexpr (n == 1) {
+            return at(0);
+        } else {
+            // Named products: no sum is fused with one. On a side one of them is 0.
+            T const a = place.weight[0] * at(0), b = place.weight[1] * at(1),
+                    c = place.weight[2] * at(2);
+            return a + b + c;
+        }
+    }
+    /// Position (0) or normal (3) of a vertex.
+    template <class T> float3<T> vector(std::int32_t vertex, int first) const
+    {
+        std::int32_t const at = vertex * TableVerticesShader::kFloats + first;
+        return {load<T>(vertices, at), load<T>(vertices, at + 1), load<T>(vertices, at + 2)};
+    }
+};
+
+/// A point with subdivision shading: normals summed as positions are, and scaled.
+struct TablePatch {
+    TableBuffers buffers;
+
+    std::vector<ResourceInfo> resources() const { return buffers.resources(); }
+
+    /// \param place  of the point among the samples
+    /// \cost  a point of the patch: 6 mul, 6 add, 9 fetches; of three samples 3 mul, 2 add and 2
+    ///        fetches more
+    template <class T, int n>
+    SurfacePoint<T> operator()(std::int32_t patch, TablePlace<T, n> const& place) const
+    {
+        float3<T> position(T(0), T(0), T(0)), normal = position;
+        buffers.for_each_point<T>(patch, [&](std::int32_t vertex, int_of<T> const& table) {
+            T const weight = buffers.weight_at<T>(buffers.tables, table, place);
+            position = add_term(position, weight, buffers.vector<T>(vertex, 0));
+            normal = add_term(normal, weight, buffers.vector<T>(vertex, 3));
+        });
+        // Opposite normals cancel in between: there is z, the same from all sides.
+        return {position, unit_or(normal, [] { return float3<T>(T(0), T(0), T(1)); })};
+    }
+};
+
+/// Of two tangents. A routine: the patches of an edge have its samples in different places.
+template <class T> float3<T> sample_normal(float3<T> const& a, float3<T> const& b)
+{
+    Routine<T> const here("sample_normal");
+    return unit_or(float3<T>(cross(a, b)), [] { return float3<T>(T(0), T(0), T(1)); });
+}
+
+/// The same with the geometric normals of samples, from tables of two tangents whose cross product
+/// points outwards; linear between samples, and scaled. At the patch's corners, where tangents are
+/// the patches' own, those of the vertices.
+struct TangentTablePatch {
+    static constexpr int kSides = 3;
+
+    TableBuffers buffers;
+    std::array<Buffer<float>, 2> tangents; ///< as TableBuffers::tables
+    Buffer<std::uint32_t> corners;         ///< [patch][kSides]: a vertex
+    Buffer<float> corner_normals;          ///< [vertex][3]
+    std::array<int, kSides> corner_samples{};
+
+    std::vector<ResourceInfo> resources() const
+    {
+        std::vector<ResourceInfo> out = buffers.resources();
+        for (Buffer<float> const& t : tangents) out.push_back(t.info());
+        out.push_back(corners.info());
+        out.push_back(corner_normals.info());
+        return out;
+    }
+
+    /// \cost  a point of the patch: 9 mul, 9 add, 8 fetches; of three samples 15 mul, 14 add and 6
+    ///        fetches more
+    template <class T, int n>
+    SurfacePoint<T> operator()(std::int32_t patch, TablePlace<T, n> const& place) const
+    {
+        using Int = int_of<T>;
+        using V = float3<T>;
+        V const zero(T(0), T(0), T(0)), z(T(0), T(0), T(1));
+        V position = zero, sums[n][2];
+        for (auto& s : sums) s[0] = s[1] = zero;
+        buffers.for_each_point<T>(patch, [&](std::int32_t vertex, Int const& table) {
+            V const p = buffers.vector<T>(vertex, 0);
+            position = add_term(position, buffers.weight_at<T>(buffers.tables, table, place), p);
+            for (int i = 0; i < n; ++i)
+                for (int k = 0; k < 2; ++k)
+                    sums[i][k] = add_term(
+                        sums[i][k], load<T>(tangents[std::size_t(k)], table + place.sample[i]), p);
+        });
+        V normals[n];
+        for (int i = 0; i < n; ++i) normals[i] = sample_normal(sums[i][0], sums[i][1]);
+        for (int c = 0; c < kSides; ++c) {
+            std::int32_t const at = 3 * load<T>(corners, kSides * patch + c);
+            V const corner(load<T>(corner_normals, at), load<T>(corner_normals, at + 1),
+                           load<T>(corner_normals, at + 2));
+            for (int i = 0; i < n; ++i)
+                normals[i] = select(place.sample[i] == Int(corner_samples[std::size_t(c)]), corner,
+                                    normals[i]);
+        }
+        V normal = normals[0];
+        if constexpr (n == 3) {
+            // Named products, as of weights.
+            V const a = place.weight[0] * normals[0], b = place.weight[1] * normals[1],
+                    c = place.weight[2] * normals[2];
+            normal = unit_or(V(a + b + c), [&] { return z; });
+        }
+        return {position, normal + zero}; // -0 is 0
+    }
+};
+
+/// Factors of the straight edges between a patch's corners; no control points at all.
+template <TessellatorDomain kDomain_> struct TableHullShader {
+    static constexpr TessellatorDomain kDomain = kDomain_;
+    template <class T> using Input = ControlVertex<T>;
+    template <class T> using ControlPoint = ControlVertex<T>;
+    template <class T> using PatchConstant = ControlVertex<T>; // none
+    template <class T> using Points = ControlPoints<ControlVertex<T>>;
+
+    TessFactorRule factors;
+
+    int control_points() const { return 0; }
+    int patch_constants() const { return 0; }
+    template <class T> ControlVertex<T> control_point(PatchInput, Points<T> const&, int_of<T>) const
+    {
+        return {};
+    }
+    template <class T>
+    ControlVertex<T> patch_constant(PatchInput, Points<T> const&, Points<T> const&, int_of<T>) const
+    {
+        return {};
+    }
+    template <class T>
+    std::array<T, 6> tess_factors(PatchInput, Points<T> const& in, Points<T> const&,
+                                  Points<T> const&) const
+    {
+        return cage_factors<kDomain, T>(factors, [&](int k) { return in[k].position; });
+    }
+};
+
+/// On the tessellator's points.
+/// \tparam Patch  TablePatch or TangentTablePatch
+template <class Patch> struct TableTriangleDomainShader {
+    static constexpr TessellatorDomain kDomain = TessellatorDomain::Tri;
+    template <class T> using ControlPoint = ControlVertex<T>; // none
+    template <class T> using PatchConstant = ControlVertex<T>;
+    template <class T> using Output = SurfacePoint<T>;
+
+    Patch patch;
+    TriangleSamples samples;
+
+    std::vector<ResourceInfo> resources() const { return patch.resources(); }
+    template <class T>
+    SurfacePoint<T> operator()(DomainInput<T> const& in, ControlPoints<ControlVertex<T>> const&,
+                               ControlPoints<ControlVertex<T>> const&) const
+    {
+        return patch(in.primitive_id, samples.between<T>(in));
+    }
+};
+
+/// On a refinement pattern: an instance a patch, whose vertices bring u and v, multiples of
+/// 1/segments (HOLL10's reference [9]).
+template <class Patch, class Epilog> struct TableTriangleVertexShader {
+    template <class T> struct Input {
+        T u, v;
+        static constexpr auto signature() { return std::tuple{&Input::u, &Input::v}; }
+    };
+    template <class T> using Output = typename Epilog::template Output<T>;
+
+    Patch patch;
+    TriangleSamples samples;
+    Epilog epilog;
+
+    std::vector<ResourceInfo> resources() const
+    {
+        std::vector<ResourceInfo> out = patch.resources();
+        for (ResourceInfo& r : resources_of(epilog)) out.push_back(std::move(r));
+        return out;
+    }
+    template <class T> Output<T> operator()(VertexInput<T> const& in, Input<T> const& p) const
+    {
+        DomainInput<T> const at{p.u, p.v, T(T(1) - p.u - p.v), in.instance_id};
+        return epilog(at, patch(in.instance_id, samples.at<T>(at)));
+    }
+};
+
+} // namespace tessemu
