@@ -45,8 +45,8 @@ public:
     /// The first refined face of a base face; those of the next face follow its last.
     std::size_t first_face(std::uint32_t face) const { return first_face_[face]; }
 
-    /// Point at (i, j) / grid() of a base face with a grid, on the face's side. Quad: i from corner 0
-    /// to corner 1, j from corner 0 to corner 3. Triangle: weights of corners 0 and 1,
+    /// Point at (i, j) / grid() of a base face with a grid, on the face's side. Quad: i from corner
+    /// 0 to corner 1, j from corner 0 to corner 3. Triangle: weights of corners 0 and 1,
     /// i + j <= grid().
     std::uint32_t vertex(std::uint32_t face, int i, int j) const
     {

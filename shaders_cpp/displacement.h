@@ -162,8 +162,9 @@ struct OwnedCoordinates {
         T u = turns == 0 ? in.u : turns == 1 ? V : turns == 2 ? U : in.v;
         T v = turns == 0 ? in.v : turns == 1 ? in.u : turns == 2 ? V : U;
         if (sides == 3) {
-            u = turns == 0 ? in.u : turns == 1 ? in.w : in.v;
-            v = turns == 0 ? in.v : turns == 1 ? in.u : in.w;
+            T const w = U - in.v;
+            u = turns == 0 ? in.u : turns == 1 ? w : in.v;
+            v = turns == 0 ? in.v : turns == 1 ? in.u : w;
             if (word & kFlipped) u = T(1) - u, v = T(1) - v;
         }
         T const size(1.0f / float(1 << level));

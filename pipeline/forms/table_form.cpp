@@ -223,7 +223,8 @@ CommandList TableForm::commands(SurfaceSettings const& s) const
     auto const pattern_vertices = std::make_shared<std::vector<float>>();
     if (mesher_ == Mesher::Pattern) {
         if (s.adaptive_rule.kind != TessFactorRule::Kind::Uniform)
-            throw Error("mesher=pattern refines every patch alike: it takes no adaptive factors");
+            throw Error("mesher=pattern refines every patch alike: it takes no factors by edge "
+                        "(--tess-edge); mesher=tessellator does");
         if (s.tess_factor > float(samples.segments))
             throw Error("mesher=pattern: " + std::to_string(int(std::ceil(s.tess_factor))) +
                         " segments along an edge of a patch, its tables have " +

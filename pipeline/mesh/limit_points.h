@@ -33,10 +33,10 @@ struct LimitRules {
     LimitPoints (*limits)(Topology const&, std::span<glm::dvec3 const>);
 };
 
-/// Of a vertex with all its tags on a side of it. Where the tangents are parallel, as two sharp edges
-/// in one line are, the faces decide; and at a corner whose faces turn by more than half a circle
-/// they say which side of the plane of its sharp edges is outside, unless Biermann's rules have. By
-/// those the edges of a face alone on its side may lie in one line too.
+/// Of a side of a vertex. Where the tangents are parallel, as two sharp edges in one line are, the
+/// faces decide; and at a corner whose faces turn by more than half a circle they say which side of
+/// the plane of its sharp edges is outside, unless Biermann's rules have. By those the edges of a
+/// face alone on its side may lie in one line too.
 glm::dvec3 side_normal(Ring<glm::dvec3> const& ring, RingSharpness const& sharp, VertexRule rule,
                        VertexLimit<glm::dvec3>::Side const& side);
 /// By pole: the mean of the faces around, as the schemes have it.

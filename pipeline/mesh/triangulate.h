@@ -13,7 +13,8 @@ struct TriangulatedMesh {
     std::uint32_t first_cut = 0; ///< of them, by its number in the file
 };
 
-/// Cuts faces of more than three sides by the diagonals from their first vertices; tags stay, a
+/// Cuts faces of more than three sides by the diagonals from their first vertices, or from the
+/// first other one whose diagonals are no edges yet: two faces may have the same. Tags stay, a
 /// hole's triangles are holes, and each triangle keeps its face's number in the file.
 /// \cost  linear in the corners of faces
 TriangulatedMesh triangulate(ControlMesh mesh);

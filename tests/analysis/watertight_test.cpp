@@ -412,6 +412,7 @@ bool can_have(std::string const& scheme, Mistake mistake)
         {"phong", of_cage_form},
         {"flat", of_cage_form},
         {"tables-loop", of_cage_form},
+        {"qas", of_cage_form},
         {"bolz",
          {Mistake::Order, Mistake::Contraction, Mistake::Factors, Mistake::Normals, Mistake::Fold,
           Mistake::Weights}}};

@@ -329,7 +329,7 @@ TEST(SubdivisionKernels, RunOnTheMovedMesh)
     EXPECT_EQ(skinning.name, "skinning");
     EXPECT_EQ(skinning.groups[0], (mesh.positions.size() + 63) / 64);
     ControlMesh moved = mesh;
-    moved.positions = drawn_mesh(RefinedMesh(mesh, 0, nullptr), s, ThreadPool(1)).mesh.positions;
+    moved.positions = drawn_mesh(RefinedMesh(mesh, 0, catmull_clark_step), s, ThreadPool(1)).mesh.positions;
     EXPECT_NE(moved.positions, mesh.positions);
     auto const positions = [](RefinedMesh const& m, SurfaceSettings const& settings) {
         return drawn_mesh(m, settings, ThreadPool(1)).mesh.positions;

@@ -70,9 +70,9 @@ TEST(WidePatches, SharedPointsHaveEqualBitsUnderEveryContraction)
                 }
             ++drawn;
         }
-    // Both Gregory forms, Stam, biseptic, both kinds of tables, PN triangles, Phong and flat ones,
-    // ACC where all faces are quads, and where nothing is wide Pm.
-    EXPECT_EQ(drawn, 9 * 7 + 5 + 1);
+    // Both Gregory forms, Stam, biseptic and bolz, ACC where all faces are quads, where nothing is
+    // wide Pm, and of triangles alone Loop's tables, QAS, PN triangles, Phong and flat ones.
+    EXPECT_EQ(drawn, 5 * 7 + 5 + 1 + 5);
 }
 
 TEST(WidePatches, AWarningCountsThem)
@@ -171,7 +171,7 @@ TEST(WidePatches, ALimitThatStaysIsNamed)
         EXPECT_EQ(e.face, 0u);
         EXPECT_STREQ(e.what(), "pm draws vertices of at most 15 edges: vertex 1 of face 1 has 16; "
                                "schemes that draw this mesh: gregory-stencil, gregory-two-stage, "
-                               "acc, stam, biseptic, bolz, tables-loop, pn-triangles, "
+                               "acc, stam, biseptic, bolz, tables-loop, qas, pn-triangles, "
                                "phong, flat");
     }
     try {
@@ -180,7 +180,7 @@ TEST(WidePatches, ALimitThatStaysIsNamed)
     } catch (MeshError const& e) {
         EXPECT_STREQ(e.what(), "gregory-stencil draws vertices of at most 2048 edges: vertex 1 of "
                                "face 1 has 2049; schemes that draw this mesh: "
-                               "pn-triangles, phong, flat");
+                               "qas, pn-triangles, phong, flat");
     }
     // A step of subdivision makes a vertex of each face.
     try {

@@ -5,10 +5,13 @@
 #include "emu/tally.h"
 #include "io/model.h"
 #include "pipeline/frame.h"
+#include "pipeline/mesh/loop.h"
+#include "pipeline/schemes/qas/limit_rows.h"
 #include "pipeline/schemes/scheme.h"
 #include "shaders_cpp/flat/flat_triangle.h"
 #include "shaders_cpp/phong/phong_triangle.h"
 #include "shaders_cpp/pn_triangles/pn_triangle.h"
+#include "shaders_cpp/qas/qas_triangle.h"
 #include "tests/support/files.h"
 #include "tests/support/machines.h"
 
@@ -272,6 +275,58 @@ TEST(Substitutes, RunTimeCountsAreThoseOfThePage)
         EXPECT_EQ(flat.constants_fetched, 0u);
         EXPECT_EQ(counted("flat", "faces", machine).hull_mul, 3 * 12 * flat.patches);
     }
+}
+
+// Limit points of a cage in double, through the hull shader's formula and the domain shader.
+TEST(Qas, ControlPointsAndPointsAreTheGoldenOnes)
+{
+    Json const golden =
+        Json::parse(test::read_text(test::golden("subdivision/substitutes.json")))["qas"];
+    ControlMesh mesh;
+    std::vector<glm::dvec3> x;
+    for (Json const& v : golden["verts"]) x.emplace_back(v[0], v[1], v[2]);
+    mesh.positions.assign(x.begin(), x.end());
+    for (Json const& f : golden["faces"]) mesh.add_face(f.get<std::vector<std::uint32_t>>());
+    Topology const topology(mesh);
+    LimitRows const rows = loop_limit_rows(topology);
+    PointNumbers const number(topology, true);
+    std::size_t samples = 0;
+    for (Json const& patch : golden["patches"]) {
+        auto const face = patch["face"].get<std::vector<std::uint32_t>>();
+        double points[6][6], control[6][6];
+        for (std::size_t i = 0; i < 6; ++i) {
+            std::uint32_t const point =
+                i < 3 ? number.vertex(face[i])
+                      : number.edge(topology.find_edge(face[i - 3], face[(i - 2) % 3]));
+            glm::dvec3 sums[3] = {};
+            for (std::uint32_t t = rows.first[point]; t < rows.first[point + 1]; ++t)
+                for (std::size_t k = 0; k < 3; ++k)
+                    sums[k] += rows.weights[3 * t + k] * x[rows.vertices[t]];
+            glm::dvec3 const n = glm::normalize(glm::cross(sums[1], sums[2]));
+            for (int k = 0; k < 3; ++k) points[i][k] = sums[0][k], points[i][3 + k] = n[k];
+        }
+        ControlPoints<NormalVertex<double>> const limits(&points[0][0], 6);
+        for (int i = 0; i < 6; ++i) {
+            NormalVertex<double> const c = QasHullShader{}.control_point<double>({0}, limits, i);
+            constexpr char const* kNames[] = {"200", "020", "002", "110", "011", "101"};
+            expect_near(c.position, patch["geometry"][kNames[i]], kNames[i]);
+            expect_near(c.normal, patch["normal"][kNames[i]], kNames[i]);
+            double const xyz[] = {c.position.x, c.position.y, c.position.z,
+                                  c.normal.x,   c.normal.y,   c.normal.z};
+            std::copy_n(xyz, 6, control[i]);
+        }
+        ControlPoints<NormalVertex<double>> const b(&control[0][0], 6);
+        for (Json const& s : patch["samples"]) {
+            double const u = s[0], v = s[1]; // the second and the third corner's
+            SurfacePoint<double> const p =
+                QasTriangle{}(DomainInput<double>{1 - u - v, u, v, 0}, b,
+                              ControlPoints<ControlVertex<double>>(nullptr, 0));
+            expect_near(p.position, s[2], "position " + s.dump());
+            expect_near(p.normal, s[3], "normal " + s.dump());
+            ++samples;
+        }
+    }
+    EXPECT_GT(samples, 8u);
 }
 
 } // namespace

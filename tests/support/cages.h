@@ -25,8 +25,11 @@ inline std::vector<Scheme const*> tessellated_schemes()
     return out;
 }
 
+/// As it is: a scheme of triangles would cut other faces.
 inline bool takes(Scheme const& scheme, ControlMesh const& mesh)
 {
+    for (std::size_t f = 0; f < mesh.faces(); ++f)
+        if (!scheme.info().takes.quads && mesh.face(f).size() != 3) return false;
     try {
         build_scheme(scheme, mesh);
     } catch (MeshError const&) { // tests/pipeline/schemes_test.cpp holds the scheme to its word
