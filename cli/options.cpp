@@ -247,8 +247,8 @@ void add_options(Verb& verb, ModelRequest& o)
     verb.option("--scheme", o.scheme, parse_scheme, "patch scheme, see 'tessemu schemes'",
                 "gregory-stencil");
     verb.option("--subdivide", o.build.subdivide, whole(0, 6),
-                "steps of Catmull-Clark subdivision of the mesh (of a scheme of triangles Loop) "
-                "before the scheme, beyond those that it asks for, 0 to 6; they run as compute "
+                "steps of subdivision of the mesh before the scheme (Catmull-Clark; before a scheme "
+                "of triangles Loop), beyond those that it asks for, 0 to 6; they run as compute "
                 "shaders (LOOP10 3) and are counted",
                 "0");
 }
