@@ -424,9 +424,11 @@ TEST(Watertight, EachMistakeFlipsTheVerdictsThatItMust)
 {
     constexpr char const* kNames[] = {"topology",  "position", "normal",
                                       "displaced", "coverage", "raycast"};
-    for (auto const& of : schemes())
+    for (auto const& of : schemes()) {
+        std::string const scheme = of->info().name;
+        // One of those whose patches are triangles with no edges of their own.
+        if (test::kSlow && !of->info().takes.quads && scheme != "tables-loop") continue;
         for (Expected const& e : kMatrix) {
-            std::string const scheme = of->info().name;
             Case c(test::closed_cage_of(*of), scheme);
             c.settings.parity = e.parity;
             // Of one corner of one patch: a crack of a few pixels.
@@ -455,6 +457,7 @@ TEST(Watertight, EachMistakeFlipsTheVerdictsThatItMust)
                 }
             }
         }
+    }
 }
 
 TEST(Mistakes, AreRefusedWhereTheyCannotBePlanted)
