@@ -9,8 +9,6 @@
 #include "pipeline/basis_tables/table_grid.h"
 #include "pipeline/mesh/refined_step.h"
 
-#include <cassert>
-
 namespace tessemu {
 
 /// Weights of a patch's control points.
@@ -51,11 +49,12 @@ private:
 
 namespace detail {
 
-/// Faces around a patch with the points that steps have made of control points.
+/// Of a vertex in the grid's samples, where it is one of the patch.
 struct TablePlaceOnGrid {
     int i = -1, j = -1;
     bool is_on_patch() const { return i >= 0; }
 };
+/// Faces around a patch with the points that steps have made of control points.
 template <class X> struct TablePiece {
     ControlMesh mesh;
     std::vector<X> points;                // by vertex

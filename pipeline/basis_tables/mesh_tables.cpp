@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <set>
 
 namespace tessemu {
@@ -105,7 +104,7 @@ void MeshTables::add_vertices(Topology const& topology, LocalMeshFinder const& f
         if (cuts.size() < 2 && !topology.is_boundary(v)) cuts.assign(1, 0);
         for (std::size_t i = 0; i < cuts.size(); ++i) {
             std::size_t const end =
-                i + 1 < cuts.size() ? cuts[i + 1] : ring.size() + (cuts[0] ? cuts[0] : 0);
+                i + 1 < cuts.size() ? cuts[i + 1] : ring.size() + cuts[0]; // round
             for (std::size_t j = cuts[i]; j < end; ++j)
                 sector[ring[j % ring.size()]] = ring[cuts[i]];
         }
@@ -159,11 +158,6 @@ void MeshTables::add_vertices(Topology const& topology, LocalMeshFinder const& f
     }
     for (std::size_t i = 0; i < points_.size(); ++i)
         points_[i].vertex = number[sector[corners[i][0]]];
-}
-
-std::vector<TableVertex> MeshTables::whole_vertices() const
-{
-    return whole_;
 }
 
 void MeshTables::enforce(Topology const& topology)

@@ -63,7 +63,7 @@ public:
     std::span<TableVertex const> vertices() const { return vertices_; }
     std::span<std::uint32_t const> rings() const { return rings_; } ///< vertices of the mesh
     /// The same rings around all of a vertex, whatever is sharp: [vertex of vertices()].
-    std::vector<TableVertex> whole_vertices() const;
+    std::span<TableVertex const> whole_vertices() const { return whole_; }
     bool has_creases() const { return has_creases_; } ///< a vertex is in vertices() twice
     /// Inside the mesh; where they end none of their vertices need be twice.
     bool has_sharp_edges() const { return has_sharp_edges_; }

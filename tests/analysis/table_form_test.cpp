@@ -55,6 +55,7 @@ LimitSamples read_samples(std::filesystem::path const& path)
             row.ignore();
         }
         auto const eighth = [](double x) { return int(std::lround(8 * x)); };
+        // Printed with 10 digits.
         EXPECT_NEAR(8 * c[2], eighth(c[2]), 1e-9) << "a sample between our rows";
         out.at[{int(c[0]), eighth(c[2]), eighth(c[3])}] = {{c[4], c[5], c[6]}, {c[7], c[8], c[9]}};
     }
@@ -86,6 +87,8 @@ void expect_limit(std::filesystem::path const& model, std::filesystem::path cons
         }
     });
     EXPECT_EQ(met.size(), limit.at.size());
+    // Weights and positions are floats: M1 and a sum of up to 20 products round some 40 times, each
+    // by 2^-24 of at most 0.9 diagonals, 2.1e-6 if all went one way.
     EXPECT_LT(worst, 2e-6);
     testing::Test::RecordProperty("worst_distance_in_diagonals",
                                   std::to_string(worst * 1e9) + "e-9");
@@ -310,7 +313,7 @@ TEST(MeshTables, TheirSizeUpToValence18IsThePapers9MegabytesWhenPadded)
     EXPECT_EQ(types.size() + 1, 16u + 17 * 18 / 2);
     EXPECT_EQ(most, 24u);
     std::size_t const bytes = 561 * sizeof(float);
-    EXPECT_NEAR(double(bytes * (interior + boundary)) / 1e6, 6.9, 0.05); // as long as needed
+    EXPECT_NEAR(double(bytes * (interior + boundary)) / 1e6, 6.9, 0.05);       // as long as needed
     EXPECT_NEAR(double(bytes * (types.size() + 1) * most) / 1e6, 9.10, 0.005); // all alike
 }
 
