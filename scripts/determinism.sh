@@ -85,12 +85,13 @@ run_schemes() { # folder, threads, lanes
     # The golem is quads with texture coordinates, the spindle triangles without: no image can
     # displace it, and the error view has no quads to compare. Tables that another build left in the
     # cache would be compared with themselves.
-    for scheme in gregory-stencil gregory-two-stage acc pm qas pn-triangles phong flat tables-loop stam biseptic bolz; do
+    for scheme in gregory-stencil gregory-two-stage acc pm qas pn-triangles phong flat tables-catmull-clark \
+        tables-loop tables-butterfly stam biseptic bolz; do
         local cage=golem options="--scheme $scheme -j $2 --lanes $3 --table-cache none --json -"
         local variants=("--contraction none" "--contraction mixed:5" "--view zebra"
             "--displace studs --animate sway --phase 0.3 --contraction mixed:5")
         case $scheme in
-        qas | pn-triangles | phong | flat | tables-loop) cage=spindle ;;
+        qas | pn-triangles | phong | flat | tables-loop | tables-butterfly) cage=spindle ;;
         *) variants+=("--displace docs/images/roofline.png --contraction all" "--view error --level 3") ;;
         esac
         case $scheme in

@@ -19,7 +19,8 @@ struct LocalTables {
     ///
     /// The tangents are two directions whose cross product points outwards, of any length: on the
     /// patch's sides the first runs along them, from corner k to k + 1. On an infinitely sharp edge
-    /// they are those of the patch's side. At the patch's corners each patch has others.
+    /// they are those of the patch's side. At the patch's corners each patch has others. Empty where
+    /// the masks have no tangents (WideMasks).
     std::vector<double> position, tangents[2];
 };
 
@@ -70,30 +71,27 @@ template <class X>
 TablePiece<X> kept_piece(TablePiece<X> const& coarse, Topology const& topology, ControlMesh fine,
                          std::vector<X> points, bool keeps_triangles, int rings);
 
-} // namespace detail
-
-/// \tparam X     RingWeights, or SingleRow
-/// \param steps  down to the grid, of 2^steps segments
-/// \cost  time of order of the samples times the control points: some milliseconds
-template <class Masks, class X = RingWeights>
-LocalTables make_local_tables(LocalMesh const& type, int steps)
+template <class Masks, class X>
+void take_limit_positions(TablePiece<X> const& piece, LocalTables& out)
 {
-    LocalTables out{type.points, {type.sides(), 1 << steps}, {}, {}};
-    detail::TablePiece<X> piece = detail::first_piece<X>(type, out.grid);
-    int const rings = type.crease_method == CreaseMethod::Chaikin ? 2 : 1;
-    for (int s = 0; s < steps; ++s) {
-        Topology const topology(piece.mesh);
-        Sharpness const sharpness(topology);
-        auto points = refined_points<Masks, X>(topology, sharpness, piece.points);
-        ControlMesh fine = split_mesh(topology, sharpness, std::vector<glm::dvec3>(points.size()),
-                                      Masks::kKeepsTriangles);
-        piece = detail::kept_piece(piece, topology, std::move(fine), std::move(points),
-                                   Masks::kKeepsTriangles, rings);
+    Topology const t(piece.mesh);
+    auto const samples = std::size_t(out.grid.samples());
+    out.position.resize(samples * std::size_t(out.points));
+    for (std::uint32_t v = 0; v < piece.points.size(); ++v) {
+        if (!piece.places[v].is_on_patch()) continue;
+        X const limit = Masks::limit_point(t, v, std::span<X const>(piece.points));
+        auto const at = std::size_t(out.grid.index(piece.places[v].i, piece.places[v].j));
+        for (std::size_t k = 0; k < std::size_t(out.points); ++k)
+            out.position[k * samples + at] = limit[k];
     }
+}
+
+template <class Masks, class X> void take_limits(TablePiece<X> const& piece, LocalTables& out)
+{
     Topology const t(piece.mesh);
     Sharpness const sharpness(t);
     Limits<Masks> limits;
-    auto const samples = std::size_t(out.grid.samples()), all = samples * std::size_t(type.points);
+    auto const samples = std::size_t(out.grid.samples()), all = samples * std::size_t(out.points);
     out.position.resize(all);
     for (auto& tangents : out.tangents) tangents.resize(all);
     for (std::uint32_t v = 0; v < piece.points.size(); ++v) {
@@ -129,12 +127,39 @@ LocalTables make_local_tables(LocalMesh const& type, int steps)
         auto side = limit.sides.begin();
         while ((first + n - side->first_face % n) % n >= side->faces) ++side;
         auto const at = std::size_t(out.grid.index(piece.places[v].i, piece.places[v].j));
-        for (std::size_t k = 0; k < std::size_t(type.points); ++k) {
+        for (std::size_t k = 0; k < std::size_t(out.points); ++k) {
             out.position[k * samples + at] = limit.position[k];
             for (std::size_t i = 0; i < 2; ++i)
                 out.tangents[i][k * samples + at] = side->tangents[i][k];
         }
     }
+}
+
+} // namespace detail
+
+/// \tparam X     RingWeights, or SingleRow
+/// \param steps  down to the grid, of 2^steps segments
+/// \cost  time of order of the samples times the control points: some milliseconds
+template <class Masks, class X = RingWeights>
+LocalTables make_local_tables(LocalMesh const& type, int steps)
+{
+    LocalTables out{type.points, {type.sides(), 1 << steps}, {}, {}};
+    detail::TablePiece<X> piece = detail::first_piece<X>(type, out.grid);
+    int const rings =
+        std::max(rings_of<Masks>(), type.crease_method == CreaseMethod::Chaikin ? 2 : 1);
+    for (int s = 0; s < steps; ++s) {
+        Topology const topology(piece.mesh);
+        Sharpness const sharpness(topology);
+        auto points = refined_points<Masks, X>(topology, sharpness, piece.points);
+        ControlMesh fine = split_mesh(topology, sharpness, std::vector<glm::dvec3>(points.size()),
+                                      Masks::kKeepsTriangles);
+        piece = detail::kept_piece(piece, topology, std::move(fine), std::move(points),
+                                   Masks::kKeepsTriangles, rings);
+    }
+    if constexpr (WideMasks<Masks>)
+        detail::take_limit_positions<Masks>(piece, out);
+    else
+        detail::take_limits<Masks>(piece, out);
     return out;
 }
 

@@ -18,8 +18,10 @@ std::vector<std::uint16_t> used_columns(LocalTables const& t)
     auto const samples = std::ptrdiff_t(t.grid.samples());
     for (int k = 0; k < t.points; ++k) {
         auto const weighs = [&](std::vector<double> const& table) {
-            return std::any_of(table.begin() + k * samples, table.begin() + (k + 1) * samples,
-                               [](double w) { return w != 0; });
+            auto const column =
+                std::span(table).subspan(table.empty() ? 0 : std::size_t(k * samples),
+                                         table.empty() ? 0 : std::size_t(samples));
+            return std::any_of(column.begin(), column.end(), [](double w) { return w != 0; });
         };
         if (weighs(t.position) || weighs(t.tangents[0]) || weighs(t.tangents[1]))
             out.push_back(std::uint16_t(k));
@@ -33,6 +35,7 @@ TypeOfTables rounded(LocalMesh const& type, LocalTables const& t,
     TypeOfTables out{type, t.grid, int(columns.size()), {}, {}};
     auto const samples = std::size_t(t.grid.samples());
     auto const take = [&](std::vector<double> const& from, std::vector<float>& to) {
+        if (from.empty()) return;
         for (std::uint16_t k : columns)
             for (std::size_t s = 0; s < samples; ++s) to.push_back(float(from[k * samples + s]));
     };
@@ -182,6 +185,7 @@ void MeshTables::enforce(Topology const& topology)
                std::size_t(side) * std::size_t(of.grid.segments + 1) + std::size_t(t);
     };
     SignedSets sets(size);
+    int const tables = types_[0].tangents[0].empty() ? 1 : 3; // position, tangents
     // A corner is at the end of one side and the beginning of the next.
     for (std::uint32_t type = 0; type < types_.size(); ++type) {
         TypeOfTables const& of = types_[type];
@@ -222,7 +226,7 @@ void MeshTables::enforce(Topology const& topology)
         int const side_a = int(joint[2]), side_b = int(joint[3]), n = types_[a].grid.segments;
         bool const has_tangents = !joint[4];
         for (std::size_t i = 5; i < joint.size(); i += 2)
-            for (int table = 0; table < (has_tangents ? 3 : 1); ++table)
+            for (int table = 0; table < (has_tangents ? tables : 1); ++table)
                 // At the corners tangents are the patches' own.
                 for (int t = table ? 1 : 0; t <= (table ? n - 1 : n); ++t) {
                     std::uint32_t const ca = joint[i], cb = joint[i + 1];
@@ -246,7 +250,7 @@ void MeshTables::enforce(Topology const& topology)
         for (std::uint32_t type = 0; type < types_.size(); ++type) {
             TypeOfTables& of = types_[type];
             auto const samples = std::size_t(of.grid.samples());
-            for (int table = 0; table < 3; ++table)
+            for (int table = 0; table < tables; ++table)
                 for (std::uint32_t k = 0; k < std::uint32_t(of.points); ++k)
                     for (int side = 0; side < of.grid.sides; ++side)
                         for (int t = 0; t <= of.grid.segments; ++t)

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/forms/table_form.h"
 
-#include "pipeline/commands/displacement.h"
+#include "pipeline/commands/refinement_pattern.h"
+#include "pipeline/forms/table_shaders.h"
 #include "shaders_cpp/bolz/patch_constants_shader.h"
 #include "shaders_cpp/pass_through.h"
-#include "shaders_cpp/tables/table_patch.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,82 +13,69 @@ namespace tessemu {
 
 namespace {
 
-// n x n triangles, counter-clockwise in (u, v) as the tessellator's corners are.
-std::shared_ptr<DomainPoints const> triangle_pattern(int n)
-{
-    auto out = std::make_shared<DomainPoints>();
-    std::vector<std::uint32_t> first;
-    for (int j = 0; j <= n; ++j) {
-        first.push_back(std::uint32_t(out->u.size()));
-        for (int i = 0; i + j <= n; ++i) {
-            out->patch.u.push_back(std::uint32_t(i) * (kFixedOne / std::uint32_t(n)));
-            out->patch.v.push_back(std::uint32_t(j) * (kFixedOne / std::uint32_t(n)));
-            out->u.push_back(float(i) / float(n));
-            out->v.push_back(float(j) / float(n));
-        }
-    }
-    auto const at = [&](int i, int j) { return first[std::size_t(j)] + std::uint32_t(i); };
-    auto& indices = out->patch.indices;
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i + j < n; ++i) {
-            indices.insert(indices.end(), {at(i, j), at(i + 1, j), at(i, j + 1)});
-            if (i + j + 1 < n)
-                indices.insert(indices.end(), {at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
-        }
-    return out;
-}
-
-// A patch's corner is regular with six faces, or three at a boundary.
+// Inside a mesh a patch's corner is regular with six triangles, or four quads.
 PatchKind kind_of(LocalMesh const& type)
 {
     ControlMesh const mesh = type.mesh();
     Topology const topology(mesh);
+    bool const is_triangle = type.sides() == 3;
     bool is_regular = true, is_tagged = !type.creases.empty() || !type.corners.empty();
     for (std::uint32_t v = 0; v < std::uint32_t(type.sides()); ++v) {
         is_tagged = is_tagged || topology.is_boundary(v);
-        is_regular = is_regular && topology.ring(v).size() == 6;
+        is_regular = is_regular && topology.ring(v).size() == (is_triangle ? 6 : 4);
     }
     if (is_tagged) return {"crease or boundary", PatchClass::Crease};
-    return is_regular ? PatchKind{"regular triangle", PatchClass::Triangle}
-                      : PatchKind{"irregular triangle", PatchClass::Other};
+    if (is_triangle)
+        return is_regular ? PatchKind{"regular triangle", PatchClass::Triangle}
+                          : PatchKind{"irregular triangle", PatchClass::Other};
+    return is_regular ? PatchKind{"regular quad", PatchClass::RegularQuad}
+                      : PatchKind{"irregular quad", PatchClass::IrregularQuad};
 }
 
 } // namespace
 
-std::vector<SchemeParameter> TableForm::parameters()
+std::vector<SchemeParameter> TableForm::parameters(bool has_tangents)
 {
-    return {{"mesher",
-             "points of a patch: Direct3D 11's, linear between samples, or those of a refinement "
-             "pattern, all of them samples",
-             0,
-             0,
-             0,
-             {"tessellator", "pattern"}},
+    std::vector<SchemeParameter> out{
+        {"mesher",
+         "points of a patch: Direct3D 11's, linear between samples, or those of a refinement "
+         "pattern, all of them samples",
+         0,
+         0,
+         0,
+         {"tessellator", "pattern"}},
+        {"tables",
+         "weights of shared points: made equal (BOLZ03 2.1.1), or as a generator in single "
+         "precision makes them for each patch",
+         0,
+         0,
+         0,
+         {"enforced", "unenforced"}}};
+    if (has_tangents)
+        out.insert(
+            out.begin() + 1,
             {"normals",
              "summed by the weights of positions (subdivision shading), or of the surface, from "
              "tables of tangents",
              0,
              0,
              0,
-             {"shading", "tangents"}},
-            {"tables",
-             "weights of shared points: made equal (BOLZ03 2.1.1), or as a generator in single "
-             "precision makes them for each patch",
-             0,
-             0,
-             0,
-             {"enforced", "unenforced"}}};
+             {"shading", "tangents"}});
+    return out;
 }
 
-TableForm::TableForm(std::shared_ptr<RefinedMesh const> refined, MeshTables::Make const& make,
+TableForm::TableForm(std::shared_ptr<RefinedMesh const> refined, Rules const& rules,
                      Parameters const& parameters, BuildServices const& services)
     : PatchMesh(std::move(refined)),
       mesher_(parameters.word("mesher") == "pattern" ? Mesher::Pattern : Mesher::Tessellator),
-      normals_(parameters.word("normals") == "tangents" ? Normals::Tangents : Normals::Shading),
-      tables_(mesh().topology(), make,
-              {.enforced = parameters.word("tables") == "enforced",
-               .rings = mesh().mesh().rules.crease_method == CreaseMethod::Chaikin ? 2 : 1},
-              services.progress),
+      normals_(rules.has_tangents && parameters.word("normals") == "tangents" ? Normals::Tangents
+                                                                              : Normals::Shading),
+      tables_(
+          mesh().topology(), rules.make,
+          {.enforced = parameters.word("tables") == "enforced",
+           .rings = std::max(rules.rings,
+                             mesh().mesh().rules.crease_method == CreaseMethod::Chaikin ? 2 : 1)},
+          services.progress),
       sectors_(entries(tables_.vertices())),
       wholes_(entries(tables_.whole_vertices()))
 {
@@ -119,7 +106,7 @@ void TableForm::add_corner_terms()
 {
     std::vector<std::pair<MeshTables::Patch const*, int>> owner(tables_.sectors());
     for (MeshTables::Patch const& p : tables_.patches())
-        for (int k = 0; k < 3; ++k) {
+        for (int k = 0; k < tables_.types()[p.type].grid.sides; ++k) {
             auto& of = owner[tables_.sector(half_edge(p, k))];
             if (!of.first) of = {&p, k};
         }
@@ -177,10 +164,12 @@ void TableForm::add_kinds()
                 entries_of_tangents_[i].insert(entries_of_tangents_[i].end(), t.tangents[i].begin(),
                                                t.tangents[i].end());
         PatchKind kind = kind_of(t.type);
-        auto const same = std::find_if(kinds_.begin(), kinds_.end(),
-                                       [&](Kind const& k) { return k.kind.name == kind.name; });
+        auto const same = std::find_if(kinds_.begin(), kinds_.end(), [&](Kind const& k) {
+            return k.kind.name == kind.name && k.sides == t.grid.sides;
+        });
         kind_of_type.push_back(std::size_t(same - kinds_.begin()));
-        if (same == kinds_.end()) kinds_.push_back({std::move(kind), {}, {}, {}, {}, {}});
+        if (same == kinds_.end())
+            kinds_.push_back({std::move(kind), t.grid.sides, {}, {}, {}, {}, {}});
     }
     std::vector<char> const hidden = hidden_faces(mesh(), warnings_);
     for (MeshTables::Patch const& p : tables_.patches()) {
@@ -218,89 +207,80 @@ CommandList TableForm::commands(SurfaceSettings const& s) const
     cs.stride = positions.stride;
     list.commands.emplace_back(Dispatch{"vertex normals", bind_compute_shader(cs, s.machine),
                                         groups_for(tables_.vertices().size(), 64)});
-    TriangleSamples const samples{1 << MeshTables::kSteps};
-    std::shared_ptr<DomainPoints const> pattern;
-    auto const pattern_vertices = std::make_shared<std::vector<float>>();
+    Sources from{positions, *vertices, {}, 0};
     if (mesher_ == Mesher::Pattern) {
         if (s.adaptive_rule.kind != TessFactorRule::Kind::Uniform)
             throw Error("mesher=pattern refines every patch alike: it takes no factors by edge "
                         "(--tess-edge); mesher=tessellator does");
-        if (s.tess_factor > float(samples.segments))
+        constexpr int kMost = 1 << MeshTables::kSteps;
+        if (s.tess_factor > float(kMost))
             throw Error("mesher=pattern: " + std::to_string(int(std::ceil(s.tess_factor))) +
                         " segments along an edge of a patch, its tables have " +
-                        std::to_string(samples.segments) +
+                        std::to_string(kMost) +
                         ": a step of subdivision before it (--subdivide) doubles them");
-        int n = 1;
-        while (float(n) < s.tess_factor) n *= 2;
-        pattern = triangle_pattern(n);
-        for (std::size_t i = 0; i < pattern->u.size(); ++i)
-            pattern_vertices->insert(pattern_vertices->end(), {pattern->u[i], pattern->v[i]});
-        list.memory.push_back(pattern_vertices);
+        from.pattern = uniform_segments(s.tess_factor);
     }
     // Displaced, both sides of a crease have to move along one normal, which tangents do not give.
-    bool const by_tangents =
-        normals_ == Normals::Tangents && !(s.displacement && tables_.has_sharp_edges());
-    std::span<float const> corner_normals;
-    if (by_tangents) corner_normals = add_corner_normals(list, positions, s.machine);
-    TableGrid const grid{3, samples.segments};
-    for (Kind const& k : kinds_) {
-        TableBuffers buffers;
-        buffers.patches = {k.patches, 0, "patches"};
-        buffers.points = {points_, 1, "patch_points"};
-        buffers.vertices = {*vertices, 2, "table_vertices"};
-        buffers.tables = {entries_of_tables_, 3, "tables"};
-        buffers.samples = grid.samples();
-        if (!by_tangents) {
-            add_draw(list, k, TablePatch{buffers}, positions, pattern, *pattern_vertices, s);
-            continue;
-        }
-        TangentTablePatch patch;
-        patch.buffers = buffers;
-        patch.tangents = {Buffer<float>{entries_of_tangents_[0], 4, "tangent_tables_0"},
-                          Buffer<float>{entries_of_tangents_[1], 5, "tangent_tables_1"}};
-        patch.corners = {k.sectors, 6, "patch_corners"};
-        patch.corner_normals = {corner_normals, 7, "corner_normals"};
-        for (int c = 0; c < grid.sides; ++c)
-            patch.corner_samples[std::size_t(c)] = grid.on_side(c, 0);
-        add_draw(list, k, patch, positions, pattern, *pattern_vertices, s);
-    }
+    if (normals_ == Normals::Tangents && !(s.displacement && tables_.has_sharp_edges()))
+        from.corner_normals = add_corner_normals(list, positions, s.machine);
+    for (Kind const& k : kinds_)
+        if (k.sides == 3)
+            add_draw<TriangleSamples>(list, k, from, s);
+        else
+            add_draw<QuadSamples>(list, k, from, s);
     list.memory.push_back(s.pose);
     return list;
 }
 
-template <class Patch>
-void TableForm::add_draw(CommandList& list, Kind const& k, Patch const& patch,
-                         VertexSource const& positions,
-                         std::shared_ptr<DomainPoints const> const& pattern,
-                         std::span<float const> pattern_vertices, SurfaceSettings const& s) const
+template <class Samples>
+void TableForm::add_draw(CommandList& list, Kind const& k, Sources const& from,
+                         SurfaceSettings const& s) const
 {
-    TriangleSamples const samples{1 << MeshTables::kSteps};
-    if (!pattern) {
-        add_patch_draw(
-            list, mesh(),
-            {k.kind, positions, 3, k.corners, k.places,
-             bind_vertex_shader(PassThroughVertexShader{}, s.machine),
-             bind_hull_shader(TableHullShader<TessellatorDomain::Tri>{s.factor_rule()}, s.machine),
-             bind_domain_shader(TableTriangleDomainShader<Patch>{patch, samples}, s.machine)},
-            s);
+    using Shaders = TableShaders<Samples>;
+    Samples const samples{1 << MeshTables::kSteps};
+    TableGrid const grid{Samples::kCorners, samples.segments};
+    TableBuffers buffers;
+    buffers.patches = {k.patches, 0, "patches"};
+    buffers.points = {points_, 1, "patch_points"};
+    buffers.vertices = {from.vertices, 2, "table_vertices"};
+    buffers.tables = {entries_of_tables_, 3, "tables"};
+    buffers.samples = grid.samples();
+    typename Shaders::Patch patch = TablePatch{buffers};
+    if (!from.corner_normals.empty()) {
+        TangentTablePatch<Samples::kCorners> of_tangents;
+        of_tangents.buffers = buffers;
+        of_tangents.tangents = {Buffer<float>{entries_of_tangents_[0], 4, "tangent_tables_0"},
+                                Buffer<float>{entries_of_tangents_[1], 5, "tangent_tables_1"}};
+        of_tangents.corners = {k.sectors, 6, "patch_corners"};
+        of_tangents.corner_normals = {from.corner_normals, 7, "corner_normals"};
+        for (int c = 0; c < grid.sides; ++c)
+            of_tangents.corner_samples[std::size_t(c)] = grid.on_side(c, 0);
+        patch = of_tangents;
+    }
+    if (!from.pattern) {
+        add_patch_draw(list, mesh(),
+                       {k.kind, from.positions, Samples::kCorners, k.corners, k.places,
+                        bind_vertex_shader(PassThroughVertexShader{}, s.machine),
+                        Shaders::hull(s.factor_rule(), s.machine),
+                        Shaders::domain(patch, samples, s.machine)},
+                       s);
         return;
     }
     Draw out;
     out.name = k.kind.name;
     out.kind = k.kind;
     out.patches = k.places;
-    out.grid = pattern;
+    out.grid = uniform_pattern(Samples::kDomain, from.pattern);
+    auto const points = std::make_shared<std::vector<float>>();
+    for (std::size_t i = 0; i < out.grid->u.size(); ++i)
+        points->insert(points->end(), {out.grid->u[i], out.grid->v[i]});
+    list.memory.push_back(points);
     SurfaceEpilog const epilog = make_surface_epilog(mesh().base(), k.places, s);
     list.memory.push_back(epilog.memory);
-    std::visit(
-        [&](auto const& e) {
-            using Shader = TableTriangleVertexShader<Patch, std::remove_cvref_t<decltype(e)>>;
-            out.pipeline.vertex_shader = bind_vertex_shader(Shader{patch, samples, e}, s.machine);
-        },
-        epilog.shader);
+    out.pipeline.vertex_shader = Shaders::pattern(patch, samples, epilog, s.machine);
     out.call.topology = PrimitiveTopology::TriangleList;
-    out.call.set_vertices(pattern_vertices, 2);
-    out.call.indices = std::span<std::uint32_t const>(pattern->patch.indices);
+    out.call.set_vertices(std::span<float const>(*points), 2);
+    out.call.indices = std::span<std::uint32_t const>(out.grid->patch.indices);
     out.call.instance_count = std::uint32_t(k.places.size());
     list.commands.emplace_back(std::move(out));
 }

@@ -18,8 +18,13 @@ public:
         Pattern,     ///< a refinement pattern, an instance a patch: samples alone
     };
 
-    /// \param make  tables of MeshTables::kSteps
-    TableForm(std::shared_ptr<RefinedMesh const> mesh, MeshTables::Make const& make,
+    /// What a scheme's masks are to it.
+    struct Rules {
+        MeshTables::Make make; ///< tables of MeshTables::kSteps steps
+        int rings;             ///< of faces around a patch that weigh in it
+        bool has_tangents;
+    };
+    TableForm(std::shared_ptr<RefinedMesh const> mesh, Rules const& rules,
               Parameters const& parameters, BuildServices const& services);
 
     CommandList commands(SurfaceSettings const& settings) const override;
@@ -37,24 +42,28 @@ public:
         Shading,  ///< summed as positions are (subdivision shading)
         Tangents, ///< of the surface, from tables of tangents
     };
-    /// "mesher", "normals", "tables".
-    static std::vector<SchemeParameter> parameters();
+    /// "mesher", "normals" of masks that have tangents, "tables".
+    static std::vector<SchemeParameter> parameters(bool has_tangents);
     /// How tables are made by a scheme's masks: in double, or, where they are not enforced, as they
     /// come of each patch alone in single precision.
-    template <class Masks> static MeshTables::Make maker(Parameters const& parameters)
+    template <class Masks> static Rules rules(Parameters const& parameters)
     {
+        Rules out{{}, rings_of<Masks>(), !WideMasks<Masks>};
         if (parameters.word("tables") == "enforced")
-            return [](LocalMesh const& type) {
+            out.make = [](LocalMesh const& type) {
                 return make_local_tables<Masks>(type, MeshTables::kSteps);
             };
-        return [](LocalMesh const& type) {
-            return make_local_tables<Masks, SingleRow>(type, MeshTables::kSteps);
-        };
+        else
+            out.make = [](LocalMesh const& type) {
+                return make_local_tables<Masks, SingleRow>(type, MeshTables::kSteps);
+            };
+        return out;
     }
 
 private:
     struct Kind {
         PatchKind kind;
+        int sides;
         std::vector<std::uint32_t> sectors; ///< TangentTablePatch::corners
         std::vector<PatchPlace> places;
         std::vector<std::uint32_t> patches; ///< TableBuffers::patches
@@ -66,10 +75,16 @@ private:
     void add_corner_terms();
     std::span<float const> add_corner_normals(CommandList& list, VertexSource const& positions,
                                               Machine const& machine) const;
-    template <class Patch>
-    void add_draw(CommandList& list, Kind const& kind, Patch const& patch,
-                  VertexSource const& positions, std::shared_ptr<DomainPoints const> const& pattern,
-                  std::span<float const> pattern_vertices, SurfaceSettings const& settings) const;
+    /// What draws read that dispatches before them have made.
+    struct Sources {
+        VertexSource positions;
+        std::span<float const> vertices;       ///< TableBuffers::vertices
+        std::span<float const> corner_normals; ///< by TangentTablePatch; none: by TablePatch
+        int pattern = 0;                       ///< segments; 0: the tessellator's points
+    };
+    template <class Samples>
+    void add_draw(CommandList& list, Kind const& kind, Sources const& from,
+                  SurfaceSettings const& settings) const;
     /// TableVerticesShader's entries.
     static std::vector<std::uint32_t> entries(std::span<TableVertex const> vertices);
 

@@ -75,7 +75,9 @@ Ring<glm::dvec3> ring_after_step(Topology const& t, PointNumbers const& number,
 
 /// As LimitRules::limits. Throws Error by Biermann's rules where the masks do not know them.
 /// \cost  linear in the faces
-template <class Masks> LimitPoints limit_points(Topology const& t, std::span<glm::dvec3 const> x)
+template <class Masks>
+requires(!WideMasks<Masks>) LimitPoints
+    limit_points(Topology const& t, std::span<glm::dvec3 const> x)
 {
     using Vec = glm::dvec3;
     Sharpness const sharpness(t);
@@ -127,6 +129,26 @@ template <class Masks> LimitPoints limit_points(Topology const& t, std::span<glm
         std::uint32_t const pole = poles.at(v);
         if (pole != Poles::kNone && sharpness.is_untagged(v)) out.normal.back() = of_pole[pole];
     }
+    return out;
+}
+
+/// The same without tangents: normals are the mean of the faces' around, each by its area.
+template <class Masks>
+requires WideMasks<Masks> LimitPoints limit_points(Topology const& t, std::span<glm::dvec3 const> x)
+{
+    LimitPoints out;
+    std::vector<std::uint32_t> number(x.size());
+    for (std::uint32_t v = 0; v < x.size(); ++v) {
+        if (t.ring(v).empty()) continue;
+        number[v] = std::uint32_t(out.position.size());
+        out.position.push_back(Masks::limit_point(t, v, x));
+    }
+    for (std::uint32_t v : t.mesh().face_vertices) out.of_corner.push_back(number[v]);
+    out.normal.assign(out.position.size(), glm::dvec3(0));
+    auto const at = [&](HalfEdge h) { return out.position[out.of_corner[h]]; };
+    for (HalfEdge h = 0; h < out.of_corner.size(); ++h)
+        out.normal[out.of_corner[h]] += cross(at(t.next(h)) - at(h), at(t.previous(h)) - at(h));
+    for (glm::dvec3& n : out.normal) n = unit_or_zero(n);
     return out;
 }
 

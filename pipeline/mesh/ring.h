@@ -16,6 +16,9 @@
 //     lean(cos_theta)           what part of a smooth edge its point moves towards its sharp end by
 //                               Biermann's rules (docs/math/subdivision.md, 5.2)
 //
+// Masks whose points do not depend on sums around an edge or a vertex alone, but on what faces are
+// there or on points beyond them, are WideMasks (wide_masks.h).
+//
 // Points are of any type X that can be added, and multiplied and divided by a number: positions,
 // or rows of weights. A triangle's third vertex is F - a - b of the sum F of all, so Loop's edge
 // points are edge(a, b, F, F', 0) too. Where sharpness blends rules: docs/math/subdivision.md, 1.7.

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "pipeline/mesh/flatness.h"
+#include "pipeline/mesh/wide_masks.h"
 
 namespace tessemu {
 
@@ -89,8 +90,9 @@ void each_flat_ring(Topology const& topology, Sharpness const& sharpness, EdgeNu
 /// \returns  by PointNumbers
 /// \cost     linear in the corners of faces
 template <class Masks, class X>
-std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpness,
-                              std::span<X const> x)
+requires(!WideMasks<Masks>) std::vector<X> refined_points(Topology const& topology,
+                                                          Sharpness const& sharpness,
+                                                          std::span<X const> x)
 {
     ControlMesh const& mesh = topology.mesh();
     std::vector<X> face_point;
@@ -148,6 +150,27 @@ std::vector<X> refined_points(Topology const& topology, Sharpness const& sharpne
             });
         for (auto const& [i, by] : moves) out[i] += by;
     }
+    return out;
+}
+
+template <class Masks, class X>
+requires WideMasks<Masks> std::vector<X> refined_points(Topology const& topology, Sharpness const&,
+                                                        std::span<X const> x)
+{
+    ControlMesh const& mesh = topology.mesh();
+    EdgeNumbers const edges(topology);
+    std::vector<X> out;
+    for (std::uint32_t f = 0; f < mesh.faces(); ++f) {
+        auto const face = mesh.face(f);
+        if (Masks::kKeepsTriangles && face.size() == 3) continue;
+        X sum = x[face[0]];
+        for (std::size_t i = 1; i < face.size(); ++i) sum += x[face[i]];
+        out.push_back(Masks::face(sum, int(face.size())));
+    }
+    for (std::size_t e = 0; e < edges.size(); ++e)
+        out.push_back(Masks::edge_point(topology, edges.first(e), x));
+    for (std::uint32_t v = 0; v < x.size(); ++v)
+        out.push_back(topology.ring(v).empty() ? x[v] : Masks::vertex_point(topology, v, x));
     return out;
 }
 

@@ -28,7 +28,9 @@ std::vector<std::unique_ptr<Scheme>> const& schemes()
         { Make make_stam; s.push_back(make_stam()); }
         { Make make_biseptic; s.push_back(make_biseptic()); }
         { Make make_bolz; s.push_back(make_bolz()); }
+        { Make make_tables_catmull_clark; s.push_back(make_tables_catmull_clark()); }
         { Make make_tables_loop; s.push_back(make_tables_loop()); }
+        { Make make_tables_butterfly; s.push_back(make_tables_butterfly()); }
         { Make make_qas; s.push_back(make_qas()); }
         { Make make_pn_triangles; s.push_back(make_pn_triangles()); }
         { Make make_phong; s.push_back(make_phong()); }

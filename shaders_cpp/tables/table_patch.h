@@ -18,58 +18,23 @@
 #include "emu/vertex_shader.h"
 #include "shaders_cpp/cage_form/cage_factors.h"
 #include "shaders_cpp/table_term.h"
+#include "shaders_cpp/tables/table_samples.h"
 #include "shaders_cpp/tables/table_vertices_shader.h"
 
 namespace tessemu {
 
-/// Where a point lies among the samples of a table: three of them with weights, or one.
-template <class T, int n> struct TablePlace {
-    int_of<T> sample[n];
-    T weight[n]; ///< of one sample: 1
-};
-
-/// Samples of a triangle's tables, row after row of v (TableGrid).
-struct TriangleSamples {
-    int segments = 0;
-
-    /// A multiple of 1/segments.
-    template <class T> TablePlace<T, 1> at(DomainInput<T> const& in) const
-    {
-        T const n = T(float(segments));
-        return {{index<T>(T(in.u * n), T(in.v * n))}, {T(1)}};
+/// Of something at a point's samples. Named products: no sum is fused with one. On a side two of them
+/// are not 0.
+template <int n, class T, class Of> auto weighted_sum(TablePlace<T, n> const& place, Of const& of)
+{
+    using X = std::remove_cvref_t<decltype(of(0))>;
+    X sum = X(place.weight[0] * of(0));
+    for (int i = 1; i < n; ++i) {
+        X const term = place.weight[i] * of(i);
+        sum = sum + term;
     }
-    /// Any: linear between the three samples around, so on a side between two of them. All of it is
-    /// exact: u and v are multiples of 2^-16.
-    ///
-    /// \cost  2 mul, 7 add, 3 comparisons
-    template <class T> TablePlace<T, 3> between(DomainInput<T> const& in) const
-    {
-        using Int = int_of<T>;
-        T const n = T(float(segments)), last = n - T(1);
-        T const x = in.u * n, y = in.v * n;
-        T const i = min(floor(x), last), j = min(floor(y), last);
-        T const fx = x - i, fy = y - j, sum = fx + fy;
-        mask_of<T> const upper = sum > T(1);
-        Int const first = index<T>(i, j), right = first + Int(1),
-                  above = first + Int(segments + 1) - whole<T>(j);
-        T const gx = T(1) - fx, gy = T(1) - fy, rest = T(1) - sum;
-        return {{select(upper, above + Int(1), first), right, above},
-                {select(upper, T(-rest), rest), select(upper, gy, fx), select(upper, gx, fy)}};
-    }
-
-private:
-    /// Of a whole number from 0 to 2^23 - 1.
-    template <class T> static int_of<T> whole(T const& x)
-    {
-        return asuint(T(x + T(0x1p23f))) & int_of<T>(0x7fffff);
-    }
-    template <class T> int_of<T> index(T const& i, T const& j) const
-    {
-        using Int = int_of<T>;
-        Int const column = whole<T>(i), row = whole<T>(j);
-        return column + row * Int(segments + 1) - ((row * (row - Int(1))) >> Int(1));
-    }
-};
+    return sum;
+}
 
 /// What patches read.
 struct TableBuffers {
@@ -103,10 +68,7 @@ struct TableBuffers {
         if constexpr (n == 1) {
             return at(0);
         } else {
-            // Named products: no sum is fused with one. On a side one of them is 0.
-            T const a = place.weight[0] * at(0), b = place.weight[1] * at(1),
-                    c = place.weight[2] * at(2);
-            return a + b + c;
+            return weighted_sum<n>(place, at);
         }
     }
     /// Position (0) or normal (3) of a vertex.
@@ -150,14 +112,13 @@ template <class T> float3<T> sample_normal(float3<T> const& a, float3<T> const& 
 /// The same with the geometric normals of samples, from tables of two tangents whose cross product
 /// points outwards; linear between samples, and scaled. At the patch's corners, where tangents are
 /// the patches' own, those of the vertices.
-struct TangentTablePatch {
-    static constexpr int kSides = 3;
-
+/// \tparam kCorners  Samples::kCorners
+template <int kCorners> struct TangentTablePatch {
     TableBuffers buffers;
     std::array<Buffer<float>, 2> tangents; ///< as TableBuffers::tables
-    Buffer<std::uint32_t> corners;         ///< [patch][kSides]: a vertex
+    Buffer<std::uint32_t> corners;         ///< [patch][kCorners]: a vertex
     Buffer<float> corner_normals;          ///< [vertex][3]
-    std::array<int, kSides> corner_samples{};
+    std::array<int, kCorners> corner_samples{};
 
     std::vector<ResourceInfo> resources() const
     {
@@ -188,8 +149,8 @@ struct TangentTablePatch {
         });
         V normals[n];
         for (int i = 0; i < n; ++i) normals[i] = sample_normal(sums[i][0], sums[i][1]);
-        for (int c = 0; c < kSides; ++c) {
-            std::int32_t const at = 3 * load<T>(corners, kSides * patch + c);
+        for (int c = 0; c < kCorners; ++c) {
+            std::int32_t const at = 3 * load<T>(corners, kCorners * patch + c);
             V const corner(load<T>(corner_normals, at), load<T>(corner_normals, at + 1),
                            load<T>(corner_normals, at + 2));
             for (int i = 0; i < n; ++i)
@@ -197,11 +158,9 @@ struct TangentTablePatch {
                                     normals[i]);
         }
         V normal = normals[0];
-        if constexpr (n == 3) {
-            // Named products, as of weights.
-            V const a = place.weight[0] * normals[0], b = place.weight[1] * normals[1],
-                    c = place.weight[2] * normals[2];
-            normal = unit_or(V(a + b + c), [&] { return z; });
+        if constexpr (n > 1) {
+            V const sum = weighted_sum<n>(place, [&](int i) -> V const& { return normals[i]; });
+            normal = unit_or(sum, [&] { return z; });
         }
         return {position, normal + zero}; // -0 is 0
     }
@@ -237,28 +196,29 @@ template <TessellatorDomain kDomain_> struct TableHullShader {
 };
 
 /// On the tessellator's points.
-/// \tparam Patch  TablePatch or TangentTablePatch
-template <class Patch> struct TableTriangleDomainShader {
-    static constexpr TessellatorDomain kDomain = TessellatorDomain::Tri;
+/// \tparam Samples  TriangleSamples or QuadSamples
+/// \tparam Patch    TablePatch or TangentTablePatch
+template <class Samples, class Patch> struct TableDomainShader {
+    static constexpr TessellatorDomain kDomain = Samples::kDomain;
     template <class T> using ControlPoint = ControlVertex<T>; // none
     template <class T> using PatchConstant = ControlVertex<T>;
     template <class T> using Output = SurfacePoint<T>;
 
     Patch patch;
-    TriangleSamples samples;
+    Samples samples;
 
     std::vector<ResourceInfo> resources() const { return patch.resources(); }
     template <class T>
     SurfacePoint<T> operator()(DomainInput<T> const& in, ControlPoints<ControlVertex<T>> const&,
                                ControlPoints<ControlVertex<T>> const&) const
     {
-        return patch(in.primitive_id, samples.between<T>(in));
+        return patch(in.primitive_id, samples.template between<T>(in));
     }
 };
 
 /// On a refinement pattern: an instance a patch, whose vertices bring u and v, multiples of
 /// 1/segments (HOLL10's reference [9]).
-template <class Patch, class Epilog> struct TableTriangleVertexShader {
+template <class Samples, class Patch, class Epilog> struct TablePatternVertexShader {
     template <class T> struct Input {
         T u, v;
         static constexpr auto signature() { return std::tuple{&Input::u, &Input::v}; }
@@ -266,7 +226,7 @@ template <class Patch, class Epilog> struct TableTriangleVertexShader {
     template <class T> using Output = typename Epilog::template Output<T>;
 
     Patch patch;
-    TriangleSamples samples;
+    Samples samples;
     Epilog epilog;
 
     std::vector<ResourceInfo> resources() const
@@ -278,7 +238,7 @@ template <class Patch, class Epilog> struct TableTriangleVertexShader {
     template <class T> Output<T> operator()(VertexInput<T> const& in, Input<T> const& p) const
     {
         DomainInput<T> const at{p.u, p.v, T(T(1) - p.u - p.v), in.instance_id};
-        return epilog(at, patch(in.instance_id, samples.at<T>(at)));
+        return epilog(at, patch(in.instance_id, samples.template at<T>(at)));
     }
 };
 

@@ -6,8 +6,7 @@
 #include "io/model.h"
 #include "pipeline/mesh/loop.h"
 #include "pipeline/schemes/scheme.h"
-#include "tests/support/files.h"
-#include "tests/support/gzip.h"
+#include "tests/support/limit_samples.h"
 
 #include <gtest/gtest.h>
 
@@ -15,25 +14,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace tessemu {
 namespace {
 
 using Vec = glm::dvec3;
-
-// The file's positions in double: the reader's are floats.
-std::vector<Vec> exact_positions(std::filesystem::path const& obj)
-{
-    std::vector<Vec> out;
-    std::istringstream in(test::read_text(obj));
-    for (std::string line, word; std::getline(in, line);) {
-        std::istringstream words(line);
-        Vec p;
-        if (words >> word && word == "v" && words >> p.x >> p.y >> p.z) out.push_back(p);
-    }
-    return out;
-}
 
 struct Agreement {
     std::size_t compared = 0, normals = 0;
@@ -44,36 +29,22 @@ struct Agreement {
 // Rows weigh vertices 1 and 2 of a face by u and v, the grid corners 0 and 1.
 Agreement compare_with_samples(std::filesystem::path const& obj, std::filesystem::path const& csv)
 {
-    ControlMesh mesh = load_model(obj.string()).mesh;
-    if (test::read_text(obj).find("t interpolateboundary") == std::string::npos)
-        mesh.rules.boundary = BoundaryRule::EdgeOnly; // the samples' where the file names none
-    std::vector<Vec> const positions = exact_positions(obj);
+    ControlMesh const mesh = test::mesh_of_samples(obj);
+    std::vector<Vec> const positions = test::exact_positions(obj);
     EXPECT_EQ(positions.size(), mesh.positions.size());
     Topology const topology(mesh);
     LimitSurface const limit(topology, 3, positions, loop_step); // samples at 1/8 or 1/4
-    std::istringstream in(test::read_gzip(csv));
-    std::string line;
-    std::getline(in, line);
-    double const diagonal = std::stod(line.substr(line.find("bbox_diag=") + 10));
-    std::getline(in, line);
+    test::LimitSamples const golden = test::read_limit_samples(csv);
     Agreement out;
-    while (std::getline(in, line)) {
-        double c[10];
-        std::istringstream row(line);
-        for (double& x : c) {
-            row >> x;
-            row.ignore();
-        }
-        double const x = limit.grid() * (1 - c[2] - c[3]), y = limit.grid() * c[2];
+    for (auto const& s : golden.samples) {
+        double const x = limit.grid() * (1 - s.u - s.v), y = limit.grid() * s.u;
         EXPECT_NEAR(x, std::round(x), 1e-8) << "a sample beside the grid";
-        std::uint32_t const v =
-            limit.vertex(std::uint32_t(c[0]), int(std::round(x)), int(std::round(y)));
-        out.position = std::max(
-            out.position, glm::length(limit.positions()[v] - Vec(c[4], c[5], c[6])) / diagonal);
+        std::uint32_t const v = limit.vertex(s.face, int(std::round(x)), int(std::round(y)));
+        out.position = std::max(out.position,
+                                glm::length(limit.positions()[v] - s.position) / golden.diagonal);
         ++out.compared;
-        Vec const n(c[7], c[8], c[9]);
-        if (n == Vec(0)) continue;
-        out.normal = std::max(out.normal, glm::length(limit.normals()[v] - n));
+        if (s.normal == Vec(0)) continue;
+        out.normal = std::max(out.normal, glm::length(limit.normals()[v] - s.normal));
         ++out.normals;
     }
     return out;

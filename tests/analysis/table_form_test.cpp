@@ -1,4 +1,4 @@
-// The table form on Loop's scheme: limits of another implementation, closed edges, tables.
+// The table form on its schemes: limits of another implementation, closed edges, tables.
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/forms/table_form.h"
@@ -6,9 +6,9 @@
 #include "analysis/watertight.h"
 #include "io/model.h"
 #include "pipeline/mesh/loop.h"
+#include "tests/analysis/loop_stam.h"
 #include "tests/support/edges.h"
-#include "tests/support/files.h"
-#include "tests/support/gzip.h"
+#include "tests/support/limit_samples.h"
 #include "tests/support/sanitized.h"
 
 #include <gtest/gtest.h>
@@ -16,77 +16,55 @@
 #include <glm/geometric.hpp>
 
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <set>
-#include <sstream>
 
 namespace tessemu {
 namespace {
 
 using Vec = glm::dvec3;
 
-SchemeOnMesh loop_on(ControlMesh mesh, ParameterTexts set = {})
+SchemeOnMesh tables_on(std::string const& scheme, ControlMesh mesh, ParameterTexts set = {})
 {
-    return build_scheme(find_scheme("tables-loop"), std::move(mesh), {.set = std::move(set)});
-}
-
-struct LimitSamples {
-    double diagonal = 0;
-    struct Sample {
-        Vec position, normal;
-    };
-    /// Face; weights of its corners 1 and 2 in eighths.
-    std::map<std::array<int, 3>, Sample> at;
-};
-
-LimitSamples read_samples(std::filesystem::path const& path)
-{
-    LimitSamples out;
-    std::istringstream in(test::read_gzip(path));
-    std::string line;
-    std::getline(in, line);
-    out.diagonal = std::stod(line.substr(line.find("bbox_diag=") + 10));
-    std::getline(in, line);
-    while (std::getline(in, line)) {
-        std::istringstream row(line);
-        double c[10];
-        for (double& x : c) {
-            row >> x;
-            row.ignore();
-        }
-        auto const eighth = [](double x) { return int(std::lround(8 * x)); };
-        // Printed with 10 digits.
-        EXPECT_NEAR(8 * c[2], eighth(c[2]), 1e-9) << "a sample between our rows";
-        out.at[{int(c[0]), eighth(c[2]), eighth(c[3])}] = {{c[4], c[5], c[6]}, {c[7], c[8], c[9]}};
-    }
-    return out;
+    return build_scheme(find_scheme("tables-" + scheme), std::move(mesh), {.set = std::move(set)});
 }
 
 // The pattern has all dyadic points: 4 segments on half an edge are eighths of it.
-void expect_limit(std::filesystem::path const& model, std::filesystem::path const& samples)
+void expect_limit(std::string const& scheme, std::filesystem::path const& model,
+                  std::filesystem::path const& samples)
 {
-    LimitSamples const limit = read_samples(samples);
-    ASSERT_GT(limit.at.size(), 0u);
-    SchemeOnMesh const m = loop_on(load_model(model.string()).mesh, {{"mesher", "pattern"}});
+    test::LimitSamples const limit = test::read_limit_samples(samples);
+    ASSERT_GT(limit.samples.size(), 0u);
+    using Place = std::array<int, 3>; // face, u and v in eighths
+    std::map<Place, Vec> wanted;
+    for (auto const& s : limit.samples) {
+        auto const eighth = [](double x) { return int(std::lround(8 * x)); };
+        // Printed with 10 digits.
+        EXPECT_NEAR(8 * s.u, eighth(s.u), 1e-9) << "a sample between our rows";
+        wanted[{int(s.face), eighth(s.u), eighth(s.v)}] = s.position;
+    }
+    SchemeOnMesh const m = tables_on(scheme, test::mesh_of_samples(model), {{"mesher", "pattern"}});
     FrameSettings s;
     s.tess_factor = 4;
     double worst = 0;
-    std::map<std::array<int, 3>, int> met;
+    std::set<Place> met;
     visit_surface(*m.patches, s, ThreadPool(), [&](SurfacePatch const& patch) {
         for (std::size_t i = 0; i < patch.points(); ++i) {
             UnitPoint const at =
                 domain_to_unit(patch.place(), patch.domain().u[i], patch.domain().v[i]);
-            std::array const key{int(m.mesh->base().file_face(patch.place().face)), int(8 * at.v),
-                                 int(8 * (1 - at.u - at.v))};
-            auto const found = limit.at.find(key);
-            if (found == limit.at.end()) continue; // of a coarser grid
-            ++met[key];
-            worst =
-                std::max(worst, distance(Vec(patch.vertex(i).position), found->second.position) /
-                                    limit.diagonal);
+            bool const is_triangle = m.mesh->base().face(patch.place().face).size() == 3;
+            float const u = is_triangle ? at.v : at.u, v = is_triangle ? 1 - at.u - at.v : at.v;
+            Place const place{int(m.mesh->base().file_face(patch.place().face)), int(8 * u),
+                              int(8 * v)};
+            auto const found = wanted.find(place);
+            if (found == wanted.end()) continue; // of a coarser grid
+            met.insert(place);
+            worst = std::max(worst, distance(Vec(patch.vertex(i).position), found->second) /
+                                        limit.diagonal);
         }
     });
-    EXPECT_EQ(met.size(), limit.at.size());
+    EXPECT_EQ(met.size(), wanted.size());
     // Weights and positions are floats: M1 and a sum of up to 20 products round some 40 times, each
     // by 2^-24 of at most 0.9 diagonals, 2.1e-6 if all went one way.
     EXPECT_LT(worst, 2e-6);
@@ -94,16 +72,21 @@ void expect_limit(std::filesystem::path const& model, std::filesystem::path cons
                                   std::to_string(worst * 1e9) + "e-9");
 }
 
-TEST(TablesLoop, PatternsPointsAreLimitsWithSemiSharpCreases)
+// Creases that end in a semi-sharp way, boundaries; the other file's darts take a smooth vertex's
+// mask (tagged_limit_test.cpp).
+TEST(TableForm, PatternsPointsAreLimits)
 {
-    expect_limit(test::golden("limit/loop_cube_creases1.obj"),
-                 test::golden("limit/loop_cube_creases1.loop.csv.gz"));
-}
-
-TEST(TablesLoop, PatternsPointsAreLimitsAtABoundary)
-{
-    expect_limit(test::golden("limit/loop_saddle_edgeonly.obj"),
-                 test::golden("limit/loop_saddle_edgeonly.loop.csv.gz"));
+    for (auto const& [scheme, name] : {std::pair{"loop", "loop_cube_creases1.loop"},
+                                       {"loop", "loop_saddle_edgeonly.loop"},
+                                       {"catmull-clark", "catmark_cube_corner0.dyadic"},
+                                       {"catmull-clark", "catmark_cube_creases2.dyadic"},
+                                       {"catmull-clark", "catmark_inf_crease0.dyadic"},
+                                       {"catmull-clark", "catmark_tent_creases0.dyadic"}}) {
+        SCOPED_TRACE(name);
+        std::string const model(name, std::strchr(name, '.'));
+        expect_limit(scheme, test::golden("limit/" + model + ".obj"),
+                     test::golden("limit/" + std::string(name) + ".csv.gz"));
+    }
 }
 
 class LoopLimitOf : public testing::TestWithParam<char const*> {};
@@ -112,7 +95,7 @@ TEST_P(LoopLimitOf, PatternsPointsAreThoseOfAnotherImplementation)
 {
     std::string const name = GetParam();
     TESSEMU_NEEDS_SHARED("golden/limit/" + name + ".loop.csv.gz");
-    expect_limit(test::shared("models/" + name + ".obj"),
+    expect_limit("loop", test::shared("models/" + name + ".obj"),
                  test::shared("golden/limit/" + name + ".loop.csv.gz"));
 }
 INSTANTIATE_TEST_SUITE_P(Models, LoopLimitOf,
@@ -147,15 +130,42 @@ ControlMesh creased_icosahedron()
     return m;
 }
 
-std::map<std::string, ControlMesh> tagged_meshes()
+// A prism on a pentagon with a closed crease round its lid, and in another an edge and its end.
+ControlMesh creased_prism()
 {
-    std::map<std::string, ControlMesh> out;
-    out["creased icosahedron"] = creased_icosahedron();
+    ControlMesh m;
+    for (float z : {0.0f, 2.0f})
+        for (std::array<float, 2> const& p :
+             {std::array{1.0f, 0.0f}, {0.3f, 0.95f}, {-0.8f, 0.6f}, {-0.8f, -0.6f}, {0.3f, -0.95f}})
+            m.positions.emplace_back(p[0], p[1], z);
+    m.add_face(std::array<std::uint32_t, 5>{4, 3, 2, 1, 0});
+    m.add_face(std::array<std::uint32_t, 5>{5, 6, 7, 8, 9});
+    for (std::uint32_t k = 0; k < 5; ++k) {
+        std::uint32_t const next = (k + 1) % 5;
+        m.add_face(std::array{k, next, 5 + next, 5 + k});
+        m.creases.push_back({5 + k, 5 + next, kInfinitelySharp});
+    }
+    m.creases.push_back({0, 1, 2.5f});
+    m.creases.push_back({1, 2, 1.25f});
+    m.creases.push_back({3, 8, kInfinitelySharp});
+    m.corners.push_back({4, kInfinitelySharp});
+    return m;
+}
+
+struct Tagged {
+    std::string name, scheme;
+    ControlMesh mesh;
+};
+
+std::vector<Tagged> tagged_meshes()
+{
+    std::vector<Tagged> out;
+    out.push_back({"creased icosahedron", "loop", creased_icosahedron()});
     ControlMesh chaikin = creased_icosahedron();
     auto const g = chaikin.face(7);
     chaikin.creases.push_back({g[1], g[2], 1.25f});
     chaikin.rules.crease_method = CreaseMethod::Chaikin;
-    out["Chaikin"] = chaikin;
+    out.push_back({"Chaikin", "loop", chaikin});
     ControlMesh loop = icosahedron(); // a closed crease: normals of two sides
     Topology const t(loop);
     for (HalfEdge h : t.ring(0)) {
@@ -163,20 +173,37 @@ std::map<std::string, ControlMesh> tagged_meshes()
         loop.creases.push_back(
             {t.vertex_of(across), t.vertex_of(t.next(across)), kInfinitelySharp});
     }
-    out["closed crease"] = loop;
-    out["saddle"] = load_model(test::golden("limit/loop_saddle_edgeonly.obj").string()).mesh;
+    out.push_back({"closed crease", "loop", loop});
+    out.push_back({"saddle", "loop",
+                   load_model(test::golden("limit/loop_saddle_edgeonly.obj").string()).mesh});
+    out.push_back({"icosahedron", "butterfly", icosahedron()});
+    out.push_back({"saddle", "butterfly", out[3].mesh});
+    out.push_back({"creased prism", "catmull-clark", creased_prism()});
+    ControlMesh prism = creased_prism();
+    prism.rules.crease_method = CreaseMethod::Chaikin;
+    out.push_back({"Chaikin's prism", "catmull-clark", prism});
+    out.push_back({"open dart", "catmull-clark",
+                   load_model(test::golden("limit/catmark_dart_edgeonly.obj").string()).mesh});
     return out;
 }
 
-TEST(TablesLoop, SharedEdgesHaveEqualBitsWithBothMeshersAndAllTags)
+ParameterTexts with_normals(std::string const& scheme, char const* normals)
+{
+    return scheme == "butterfly" ? ParameterTexts{} : ParameterTexts{{"normals", normals}};
+}
+
+TEST(TableForm, SharedEdgesHaveEqualBitsWithBothMeshersAndAllTags)
 {
     ThreadPool const threads;
-    for (auto const& [name, mesh] : tagged_meshes())
+    for (auto const& [name, scheme, mesh] : tagged_meshes())
         for (std::array<char const*, 2> const& choice :
              {std::array{"tessellator", "shading"}, std::array{"tessellator", "tangents"},
               std::array{"pattern", "shading"}, std::array{"pattern", "tangents"}}) {
             SCOPED_TRACE(name + ", " + choice[0] + ", " + choice[1]);
-            SchemeOnMesh const m = loop_on(mesh, {{"mesher", choice[0]}, {"normals", choice[1]}});
+            if (scheme == "butterfly" && choice[1] == std::string("tangents")) continue;
+            ParameterTexts set = with_normals(scheme, choice[1]);
+            set.emplace_back("mesher", choice[0]);
+            SchemeOnMesh const m = tables_on(scheme, mesh, set);
             bool const is_pattern = std::string(choice[0]) == "pattern";
             std::vector<float> const factors =
                 is_pattern ? std::vector{1.0f, 8.0f, 32.0f} : std::vector{1.0f, 4.0f, 7.3f, 64.0f};
@@ -197,16 +224,17 @@ TEST(TablesLoop, SharedEdgesHaveEqualBitsWithBothMeshersAndAllTags)
         }
 }
 
-TEST(TablesLoop, PassesTheCrackCheckInAllPartitioningsAndWithMixedFactors)
+TEST(TableForm, PassesTheCrackCheckInAllPartitioningsAndWithMixedFactors)
 {
     ThreadPool const threads;
-    for (auto const& [name, mesh] : tagged_meshes()) {
-        for (char const* normals : {"shading", "tangents"})
+    for (auto const& [name, scheme, mesh] : tagged_meshes()) {
+        for (char const* normals : {"shading", "tangents"}) {
+            if (scheme == "butterfly" && normals == std::string("tangents")) continue;
             for (Partitioning p : {Partitioning::Integer, Partitioning::Pow2,
                                    Partitioning::FractionalOdd, Partitioning::FractionalEven})
                 for (bool mixed : {false, true}) {
                     SCOPED_TRACE(name + " " + normals + " " + std::to_string(int(p)));
-                    SchemeOnMesh const m = loop_on(mesh, {{"normals", normals}});
+                    SchemeOnMesh const m = tables_on(scheme, mesh, with_normals(scheme, normals));
                     WatertightSettings s;
                     s.frame.tess_factor = 5.5f;
                     s.frame.partitioning = p;
@@ -219,31 +247,37 @@ TEST(TablesLoop, PassesTheCrackCheckInAllPartitioningsAndWithMixedFactors)
                     for (CheckedVerdict const& v : verdicts)
                         EXPECT_NE(v.verdict, Verdict::Fail) << v.name;
                 }
+        }
     }
 }
 
-TEST(TablesLoop, CracksWhereTablesAreNotEnforced)
+TEST(TableForm, CracksWhereTablesAreNotEnforced)
 {
-    SchemeOnMesh const m = loop_on(icosahedron(), {{"tables", "unenforced"}});
-    FrameSettings s;
-    s.tess_factor = 8;
-    test::EdgeComparison const c = test::compare_edges(*m.patches, s, ThreadPool());
-    EXPECT_GT(c.differing_positions, 10u);
+    for (Tagged const& of :
+         {Tagged{"", "loop", icosahedron()}, Tagged{"", "catmull-clark", creased_prism()}}) {
+        SCOPED_TRACE(of.scheme);
+        SchemeOnMesh const m = tables_on(of.scheme, of.mesh, {{"tables", "unenforced"}});
+        FrameSettings s;
+        s.tess_factor = 8;
+        test::EdgeComparison const c = test::compare_edges(*m.patches, s, ThreadPool());
+        EXPECT_GT(c.differing_positions, 10u);
+    }
 }
 
 TEST(MeshTables, WeightsSumToOneAndTangentsToZero)
 {
-    for (auto const& [name, mesh] : tagged_meshes()) {
+    for (auto const& [name, scheme, mesh] : tagged_meshes()) {
         SCOPED_TRACE(name);
-        SchemeOnMesh const m = loop_on(mesh);
+        SchemeOnMesh const m = tables_on(scheme, mesh);
         auto const& tables = static_cast<TableForm const&>(*m.patches).tables();
         for (TypeOfTables const& t : tables.types()) {
             auto const samples = std::size_t(t.grid.samples());
-            EXPECT_EQ(samples, 561u);
+            EXPECT_EQ(samples, t.grid.sides == 3 ? 561u : 1089u);
             for (std::size_t s = 0; s < samples; ++s) {
                 double sums[3] = {};
                 for (std::size_t k = 0; k < std::size_t(t.points); ++k) {
                     sums[0] += double(t.position[k * samples + s]);
+                    if (t.tangents[0].empty()) continue; // Butterfly's
                     for (int i : {0, 1}) sums[1 + i] += double(t.tangents[i][k * samples + s]);
                 }
                 EXPECT_NEAR(sums[0], 1, 1e-6);
@@ -257,13 +291,103 @@ TEST(MeshTables, WeightsSumToOneAndTangentsToZero)
 // Corner triangles around vertices of valence 5, and the middle ones; 5 + 6 and 12 points.
 TEST(MeshTables, TypesOfAnIcosahedronAreTwo)
 {
-    SchemeOnMesh const m = loop_on(icosahedron());
+    SchemeOnMesh const m = tables_on("loop", icosahedron());
     auto const& tables = static_cast<TableForm const&>(*m.patches).tables();
     ASSERT_EQ(tables.types().size(), 2u);
     EXPECT_EQ(std::min(tables.types()[0].points, tables.types()[1].points), 11);
     EXPECT_EQ(std::max(tables.types()[0].points, tables.types()[1].points), 12);
     EXPECT_EQ(tables.vertices().size(), 42u);
     EXPECT_FALSE(tables.has_creases());
+}
+
+// Two rings of faces around a regular triangle have 27 vertices that weigh something, of Loop's one
+// ring 12; the sheet's count.
+TEST(MeshTables, ARegularTriangleOfButterflyHas27Points)
+{
+    SchemeOnMesh const m = tables_on("butterfly", icosahedron());
+    auto const& tables = static_cast<TableForm const&>(*m.patches).tables();
+    std::set<int> points;
+    for (TypeOfTables const& t : tables.types()) {
+        Topology const topology(t.type.mesh());
+        bool is_regular = true;
+        for (std::uint32_t v = 0; v < t.type.point_of.size(); ++v)
+            is_regular = is_regular && (topology.is_boundary(v) || topology.ring(v).size() == 6);
+        if (is_regular) points.insert(t.points);
+    }
+    EXPECT_EQ(points, std::set{27});
+}
+
+// Interpolating: the file's vertices lie on the surface, as they are but for the tables' zeros and
+// ones, which are exact.
+TEST(TableForm, ButterflyInterpolatesTheFilesVertices)
+{
+    for (char const* mesher : {"tessellator", "pattern"}) {
+        ControlMesh const mesh = icosahedron();
+        SchemeOnMesh const m = tables_on("butterfly", mesh, {{"mesher", mesher}});
+        std::set<std::array<float, 3>> wanted, met;
+        for (glm::vec3 const& p : mesh.positions) wanted.insert({p.x, p.y, p.z});
+        FrameSettings s;
+        s.tess_factor = 2;
+        visit_surface(*m.patches, s, ThreadPool(), [&](SurfacePatch const& patch) {
+            for (std::size_t i = 0; i < patch.points(); ++i) {
+                glm::vec3 const p = patch.vertex(i).position;
+                if (wanted.count({p.x, p.y, p.z})) met.insert({p.x, p.y, p.z});
+            }
+        });
+        EXPECT_EQ(met, wanted) << mesher;
+    }
+}
+
+// Stam and Loop's scheme on triangles and quads at once: a file of masks is all that it has.
+// The surface does not depend on how many steps are taken before the tables.
+TEST(TableForm, DrawsAnySchemeOfOneFileOfMasks)
+{
+    ControlMesh mesh; // a house: a cube whose lid is a pyramid
+    mesh.positions = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1},
+                      {1, -1, 1},   {1, 1, 1},   {-1, 1, 1}, {0, 0, 2}};
+    mesh.add_face(std::array<std::uint32_t, 4>{3, 2, 1, 0});
+    for (std::uint32_t k = 0; k < 4; ++k) {
+        std::uint32_t const next = (k + 1) % 4;
+        mesh.add_face(std::array{k, next, 4 + next, 4 + k});
+        mesh.add_face(std::array{4 + k, 4 + next, 8u});
+    }
+    Parameters parameters;
+    parameters.set("mesher", std::string("pattern"));
+    parameters.set("tables", std::string("enforced"));
+    using Place = std::array<int, 3>; // face, and where on it in sixteenths
+    std::map<Place, Vec> of_one_step;
+    for (int steps : {1, 2}) {
+        TableForm const form(std::make_shared<RefinedMesh>(mesh, steps, test::loop_stam_step),
+                             TableForm::rules<test::LoopStam>(parameters), parameters, {});
+        EXPECT_GE(form.patch_counts().size(), 2u); // of triangles and of quads
+        FrameSettings s;
+        s.tess_factor = float(8 >> steps);
+        test::EdgeComparison const c = test::compare_edges(form, s, ThreadPool());
+        EXPECT_GT(c.shared_points, 100u);
+        EXPECT_EQ(c.lonely_points, 0u);
+        EXPECT_EQ(c.differing_positions + c.differing_normals, 0u) << c.first_difference;
+        std::size_t compared = 0;
+        visit_surface(form, s, ThreadPool(), [&](SurfacePatch const& patch) {
+            for (std::size_t i = 0; i < patch.points(); ++i) {
+                UnitPoint const at =
+                    domain_to_unit(patch.place(), patch.domain().u[i], patch.domain().v[i]);
+                Place const place{int(patch.place().face), int(16 * at.u), int(16 * at.v)};
+                Vec const p(patch.vertex(i).position);
+                if (steps == 1) {
+                    of_one_step[place] = p;
+                    continue;
+                }
+                auto const same = of_one_step.find(place);
+                if (same == of_one_step.end()) continue;
+                ++compared;
+                // Some 40 roundings by 2^-24 of coordinates up to 2.
+                EXPECT_LT(distance(same->second, p), 40 * 0x1p-23);
+            }
+        });
+        if (steps == 2) {
+            EXPECT_GE(compared, of_one_step.size());
+        }
+    }
 }
 
 // k triangles around vertex 0, all around or from one boundary edge to the other.

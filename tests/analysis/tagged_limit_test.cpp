@@ -8,7 +8,7 @@
 #include "pipeline/mesh/catmull_clark.h"
 #include "pipeline/mesh/limit.h"
 #include "tests/support/files.h"
-#include "tests/support/gzip.h"
+#include "tests/support/limit_samples.h"
 #include "tests/support/random_mesh.h"
 #include "tests/support/shapes.h"
 
@@ -26,65 +26,6 @@ namespace tessemu {
 namespace {
 
 using Vec = glm::dvec3;
-
-struct Sample {
-    std::uint32_t face;
-    int sub;
-    double u, v;
-    Vec position, normal;
-    std::string line;
-};
-
-struct Golden {
-    double diagonal = 0;
-    std::vector<Sample> samples;
-
-    explicit Golden(std::filesystem::path const& path)
-    {
-        std::istringstream in(test::read_gzip(path));
-        std::string line;
-        std::getline(in, line);
-        diagonal = std::stod(line.substr(line.find("bbox_diag=") + 10));
-        std::getline(in, line);
-        while (std::getline(in, line)) {
-            double c[10];
-            std::istringstream row(line);
-            for (double& x : c) {
-                row >> x;
-                row.ignore();
-            }
-            samples.push_back({std::uint32_t(c[0]),
-                               int(c[1]),
-                               c[2],
-                               c[3],
-                               {c[4], c[5], c[6]},
-                               {c[7], c[8], c[9]},
-                               line});
-        }
-    }
-};
-
-// The file's positions in double: the reader's are floats.
-std::vector<Vec> exact_positions(std::filesystem::path const& obj)
-{
-    std::vector<Vec> out;
-    std::istringstream in(test::read_text(obj));
-    for (std::string line, word; std::getline(in, line);) {
-        std::istringstream words(line);
-        Vec p;
-        if (words >> word && word == "v" && words >> p.x >> p.y >> p.z) out.push_back(p);
-    }
-    return out;
-}
-
-// The boundary rule of the samples, where the file names none, is edge only.
-ControlMesh mesh_of_samples(std::filesystem::path const& obj)
-{
-    ControlMesh mesh = load_model(obj.string()).mesh;
-    if (test::read_text(obj).find("t interpolateboundary") == std::string::npos)
-        mesh.rules.boundary = BoundaryRule::EdgeOnly;
-    return mesh;
-}
 
 // The points of a base face's sub-quads, by (sub, i, j) on a grid of `cells` a side. A quad's four
 // children make one sub-quad.
@@ -122,14 +63,14 @@ struct Agreement {
 
 Agreement compare_with_samples(std::filesystem::path const& obj, std::filesystem::path const& csv)
 {
-    ControlMesh const mesh = mesh_of_samples(obj);
-    std::vector<Vec> const positions = exact_positions(obj);
+    ControlMesh const mesh = test::mesh_of_samples(obj);
+    std::vector<Vec> const positions = test::exact_positions(obj);
     EXPECT_EQ(positions.size(), mesh.positions.size());
     Topology const topology(mesh);
     bool quads = true;
     for (std::size_t f = 0; f < mesh.faces(); ++f) quads = quads && mesh.face(f).size() == 4;
     LimitSurface const limit(topology, quads ? 3 : 4, positions); // samples at 1/8
-    Golden const golden(csv);
+    test::LimitSamples const golden = test::read_limit_samples(csv);
     Sharpness const sharpness(topology);
     std::vector<char> at_dart(mesh.faces(), 0);
     RingSharpness around;
@@ -143,7 +84,7 @@ Agreement compare_with_samples(std::filesystem::path const& obj, std::filesystem
     std::uint32_t face = Topology::kNone;
     std::map<std::array<int, 3>, std::uint32_t> points;
     int cells = 0;
-    for (Sample const& s : golden.samples) {
+    for (test::LimitSamples::Sample const& s : golden.samples) {
         if (s.face != face) points = points_of_face(limit, mesh, face = s.face, cells);
         auto const at =
             points.find({s.sub, int(std::round(s.u * cells)), int(std::round(s.v * cells))});

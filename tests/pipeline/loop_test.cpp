@@ -1,7 +1,9 @@
-// Loop subdivision against golden data: steps, limits, and the kernels' tables.
+// Loop and Butterfly subdivision against golden data: steps, limits, and the kernels' tables.
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/mesh/loop.h"
+
+#include "pipeline/mesh/butterfly.h"
 
 #include "pipeline/mesh/triangulate.h"
 #include "pipeline/schemes/scheme.h"
@@ -49,15 +51,17 @@ std::vector<Golden> golden_meshes()
     return out;
 }
 
-TEST(Loop, StepsAreTheGoldenOnes)
+// "loop" or "butterfly"
+template <class Masks> void expect_golden_steps(std::string const& scheme)
 {
     std::size_t compared = 0;
     for (Golden const& g : golden_meshes()) {
         SCOPED_TRACE(g.name);
+        if (!g.json.contains(scheme + "1")) continue;
         Topology const topology(g.mesh);
         Sharpness const sharpness(topology);
-        auto const next = refined_points<Loop, Vec>(topology, sharpness, g.x);
-        auto const& wanted = g.json["loop1"];
+        auto const next = refined_points<Masks, Vec>(topology, sharpness, g.x);
+        auto const& wanted = g.json[scheme + "1"];
         PointNumbers const number(topology, true);
         ASSERT_EQ(next.size(), wanted.size());
         for (std::uint32_t v = 0; v < g.x.size(); ++v, ++compared)
@@ -68,14 +72,24 @@ TEST(Loop, StepsAreTheGoldenOnes)
             EXPECT_LT(distance(next[number.edge(h)], vec(wanted[g.x.size() + e])), 1e-12)
                 << "edge " << e;
         }
-        if (!g.json.contains("loop2")) continue;
+        if (!g.json.contains(scheme + "2")) continue;
         ControlMesh const fine = split_mesh(topology, sharpness, next, true);
         Topology const second(fine);
-        auto const last = refined_points<Loop, Vec>(second, Sharpness(second), next);
-        EXPECT_LT(test::worst_distance(last, g.json["loop2"]), 1e-12);
+        auto const last = refined_points<Masks, Vec>(second, Sharpness(second), next);
+        EXPECT_LT(test::worst_distance(last, g.json[scheme + "2"]), 1e-12);
         compared += last.size();
     }
     EXPECT_GT(compared, 1000u);
+}
+
+TEST(Loop, StepsAreTheGoldenOnes)
+{
+    expect_golden_steps<Loop>("loop");
+}
+
+TEST(Butterfly, StepsAreTheGoldenOnes)
+{
+    expect_golden_steps<Butterfly>("butterfly");
 }
 
 TEST(Loop, LimitsAreTheGoldenOnes)

@@ -171,8 +171,8 @@ TEST(WidePatches, ALimitThatStaysIsNamed)
         EXPECT_EQ(e.face, 0u);
         EXPECT_STREQ(e.what(), "pm draws vertices of at most 15 edges: vertex 1 of face 1 has 16; "
                                "schemes that draw this mesh: gregory-stencil, gregory-two-stage, "
-                               "acc, stam, biseptic, bolz, tables-loop, qas, pn-triangles, "
-                               "phong, flat");
+                               "acc, stam, biseptic, bolz, tables-catmull-clark, tables-loop, "
+                               "tables-butterfly, qas, pn-triangles, phong, flat");
     }
     try {
         build_scheme(find_scheme("gregory-stencil"), test::uv_sphere(2049, 3).mesh);
