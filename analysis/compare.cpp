@@ -381,6 +381,26 @@ LimitSurface limit_of(RefinedMesh const& mesh, int level)
     return {mesh.topology(), level, {}, mesh.step()};
 }
 
+// Of the faces that are not hidden.
+Triangles triangles_of(LimitSurface const& limit, RefinedMesh const& mesh)
+{
+    Triangles out;
+    out.position = limit.positions();
+    out.normal = limit.normals();
+    std::vector<std::string> warnings; // the patches gave them
+    std::vector<char> const hidden = hidden_faces(mesh, warnings);
+    for (std::uint32_t face = 0; face < mesh.mesh().faces(); ++face) {
+        if (hidden[face]) continue;
+        for (std::size_t f = limit.first_face(face); f < limit.first_face(face + 1); ++f) {
+            auto const corner = limit.face(f);
+            for (std::size_t k = 2; k < corner.size(); ++k)
+                out.index.insert(out.index.end(), {corner[0], corner[k - 1], corner[k]});
+        }
+    }
+    out.weigh();
+    return out;
+}
+
 } // namespace
 
 EqualParameterErrors equal_parameter_errors(PatchMesh const& patches, FrameSettings settings,
@@ -399,21 +419,7 @@ SurfaceComparison compare_with_limit(PatchMesh const& patches, FrameSettings set
     SurfaceComparison out;
     out.diagonal = bounding_box_diagonal(mesh.base());
 
-    Triangles smooth;
-    smooth.position = limit.positions();
-    smooth.normal = limit.normals();
-    std::vector<std::string> warnings; // the patches gave them
-    std::vector<char> const hidden = hidden_faces(mesh, warnings);
-    for (std::uint32_t face = 0; face < mesh.mesh().faces(); ++face) {
-        if (hidden[face]) continue;
-        for (std::size_t f = limit.first_face(face); f < limit.first_face(face + 1); ++f) {
-            auto const corner = limit.face(f);
-            for (std::size_t k = 2; k < corner.size(); ++k)
-                smooth.index.insert(smooth.index.end(), {corner[0], corner[k - 1], corner[k]});
-        }
-    }
-    smooth.weigh();
-
+    Triangles const smooth = triangles_of(limit, mesh);
     SchemeSamples const samples = sample_scheme(limit, patches, settings, threads);
     Triangles scheme = samples.triangles;
     scheme.weigh();
@@ -424,6 +430,38 @@ SurfaceComparison compare_with_limit(PatchMesh const& patches, FrameSettings set
     out.equal_normal_grid = equal.normal_grid_statistics();
     compare_closest(scheme, smooth, out.diagonal, threads, out.to_limit, out.normal_to_limit);
     compare_closest(smooth, scheme, out.diagonal, threads, out.from_limit, out.normal_from_limit);
+    return out;
+}
+
+struct DrawnErrors::Samples {
+    Triangles limit;
+    double diagonal;
+};
+
+DrawnErrors::DrawnErrors(RefinedMesh const& mesh, int level)
+    : samples_(std::make_unique<Samples>(
+          Samples{triangles_of(limit_of(mesh, level), mesh), bounding_box_diagonal(mesh.base())}))
+{
+}
+
+DrawnErrors::~DrawnErrors() = default;
+
+DrawnError DrawnErrors::of(PatchMesh const& patches, FrameSettings const& settings,
+                           ThreadPool const& threads) const
+{
+    DrawnError out;
+    Triangles drawn;
+    out.counts = visit_surface(patches, settings, threads, [&](SurfacePatch const& p) {
+        auto const first = std::uint32_t(drawn.position.size());
+        for (std::size_t i = 0; i < p.points(); ++i) {
+            SurfaceVertex const vertex = p.vertex(i);
+            drawn.position.emplace_back(vertex.position);
+            drawn.normal.emplace_back(vertex.normal);
+        }
+        for (std::uint32_t i : p.triangles()) drawn.index.push_back(first + i);
+    });
+    out.points = drawn.position.size();
+    compare_closest(samples_->limit, drawn, samples_->diagonal, threads, out.position, out.normal);
     return out;
 }
 

@@ -17,6 +17,8 @@
 #include "analysis/limit_surface.h"
 #include "pipeline/frame.h"
 
+#include <memory>
+
 namespace tessemu {
 
 /// Of a quantity over a surface.
@@ -68,5 +70,31 @@ struct SurfaceComparison {
 /// \param level     1 to 6. \cost 4^level points a face on both sides, and Embree's trees on them
 SurfaceComparison compare_with_limit(PatchMesh const& patches, FrameSettings settings, int level,
                                      ThreadPool const& threads);
+
+/// What a frame shows, against the limit surface: the facets that a tess factor leaves count as an
+/// error too, so it falls as the factor grows until the scheme's own distance is left.
+struct DrawnError {
+    ErrorStatistics position, normal; ///< diagonals, radians
+    std::size_t points = 0;           ///< of the surface, a patch at a time
+    ListStatistics counts;            ///< of the frame's geometry, without rasterization
+};
+
+/// Samples of a limit surface, for any number of schemes and tess factors.
+class DrawnErrors {
+public:
+    /// \param mesh   of which schemes draw the base or a refinement
+    /// \param level  1 to 6; triangles of factor F are sampled well from log2(F) + 2 on
+    DrawnErrors(RefinedMesh const& mesh, int level);
+    ~DrawnErrors();
+
+    /// From each sample, by the area around it, to the closest point of the triangles that the
+    /// settings' factors and partitioning draw.
+    DrawnError of(PatchMesh const& patches, FrameSettings const& settings,
+                  ThreadPool const& threads) const;
+
+private:
+    struct Samples;
+    std::unique_ptr<Samples const> samples_;
+};
 
 } // namespace tessemu

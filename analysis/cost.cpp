@@ -229,6 +229,17 @@ double utilisation(GpuModel const& m, std::map<std::uint64_t, std::uint64_t> con
     return places > 0 ? fragments / places : 1;
 }
 
+std::string in_words(DrawCost const& cost)
+{
+    for (StageCost const& s : cost.stages)
+        if (s.stage == cost.bound) {
+            std::string stage = s.stage;
+            std::replace(stage.begin(), stage.end(), '_', ' ');
+            return s.bound() == "rate" ? stage : stage + ", " + s.bound();
+        }
+    return cost.bound;
+}
+
 DrawCost estimate_cost(GpuModel const& m, DrawStatistics const& s)
 {
     OfCommands of;

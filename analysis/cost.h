@@ -48,6 +48,8 @@ struct DrawCost {
     double seconds = 0; ///< with the overhead
     std::string bound;  ///< the stage that the draw waits for
 };
+/// What the draw waits for: "vertex shader, fetch", "tessellator", "memory".
+std::string in_words(DrawCost const& cost);
 
 /// \param statistics  of a draw, or of several with the same patches added up
 /// Throws Error for a stage that the GPU lacks.

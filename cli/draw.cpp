@@ -345,7 +345,8 @@ void add_draw(CommandLine& program)
                             "--vertex-cache"});
         if (o->view.shows == Shows::Cage)
             warn_of_unused(verb, "--view cage",
-                           {"--tess", "--tess-edge", "--partitioning", "--normals", "--direct3d"});
+                           {"--tess", "--tess-edge", "--partitioning", "--normals", "--direct3d",
+                            "--pattern"});
         return run(*o);
     });
 }

@@ -257,6 +257,8 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
     }
     if (o.vertex_cache) f.vertex_cache = *o.vertex_cache;
     f.direct3d10 = o.direct3d10;
+    f.pattern = o.pattern.value_or(f.pattern);
+    bool const is_uniform = f.pattern == RefinementPattern::Uniform;
     f.displacement = make_displacement(o, job);
     job.poses = make_poses(o.animate, job.surface.mesh->base());
     f.pose = job.poses[0].pose;
@@ -267,11 +269,12 @@ Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
         h.inputs.emplace_back(name_of(heights), sha256_of(read_file(heights.image)));
     Config& c = h.config = config_of(o.model, job.surface.parameters);
     if (!adaptive) c.emplace_back("tess", double(f.tess_factor));
-    if (o.model.scheme->info().tessellator)
+    if (o.model.scheme->info().tessellator && !is_uniform)
         c.emplace_back("partitioning", std::string(name_of(f.partitioning)));
     add_config(c, o.shading);
     if (o.vertex_cache) c.emplace_back("vertex_cache", name_of(*o.vertex_cache));
     if (o.direct3d10) c.emplace_back("direct3d", std::int64_t(10));
+    if (is_uniform) c.emplace_back("pattern", std::string("uniform"));
     c.emplace_back("displace", name_of(heights));
     if (f.displacement)
         c.emplace_back("displace_scale", job.placement.length_to_file(f.displacement->scale()));

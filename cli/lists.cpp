@@ -44,7 +44,8 @@ int list_schemes()
         for (auto const& [name, value] : i.watertight_with)
             out += fmt::format("    shared edges have equal bits with --set {}={}\n", name, value);
     }
-    out += "every scheme, where steps of subdivision are taken: its own, or by --subdivide\n" +
+    out += "every scheme of quads, where steps of subdivision are taken: its own, or by "
+           "--subdivide\n" +
            line_of(sort_parameter());
     print(out);
     return 0;

@@ -321,6 +321,11 @@ void add_options(Verb& verb, SurfaceRequest& o, NormalWords words)
                 "11: hull shader, tessellator, domain shader; 10: geometry shader, stream output, "
                 "instances (LOOP09 5)",
                 "11");
+    verb.option("--pattern", o.pattern,
+                one_of<RefinementPattern>({{"tessellator", RefinementPattern::Tessellator},
+                                           {"uniform", RefinementPattern::Uniform}}),
+                "points of a patch with --direct3d 10: tessellator, Direct3D 11's; uniform, all at "
+                "i/n, n being --tess rounded up to a power of two (HOLL10) [tessellator]");
 }
 
 void add_options(Verb& verb, PictureRequest& o)
@@ -379,6 +384,11 @@ void check_tessellator(SurfaceRequest const& o)
 void check_request(SurfaceRequest const& o)
 {
     check_tessellator(o);
+    if (o.pattern && !o.direct3d10)
+        throw Error("--pattern is of instanced patterns, which --direct3d 10 draws; Direct3D 11's "
+                    "points are its tessellator's");
+    if (o.pattern == RefinementPattern::Uniform && o.partitioning)
+        throw Error("--partitioning is the tessellator's; --pattern uniform has all points at i/n");
     if (o.displace.scale && o.displace.heights.kind == DisplaceRequest::Heights::Kind::None)
         throw Error("--displace-scale needs --displace");
     if (o.displace.wrap && o.displace.heights.kind != DisplaceRequest::Heights::Kind::Image)

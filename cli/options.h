@@ -65,6 +65,7 @@ struct SurfaceRequest {
     DisplaceRequest displace;
     AnimateRequest animate;
     bool direct3d10 = false;
+    std::optional<RefinementPattern> pattern; ///< of that path; by default the tessellator's
     std::optional<VertexCacheModel> vertex_cache; ///< where the verb models one
 };
 

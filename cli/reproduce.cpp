@@ -84,9 +84,12 @@ void show(PaperPlots const& plots, OutputFile& picture, ReportHeader const& head
     for (PaperClaim const& c : plots.claims)
         rows.push_back({c.letter, c.claim, std::string(name_of(c.verdict)), c.criterion, c.ours,
                         c.bound, c.other_readings});
-    out.finish([&] { return plots_report(header, plots.title, plots.sheet, rows, plots.remarks); },
-               picture.path().string() + "\n" +
-                   plots_table(plots.title, plots.sheet, rows, plots.remarks));
+    out.finish(
+        [&] {
+            return plots_report(header, plots.title, plots.sheet, rows, plots.remarks, plots.table);
+        },
+        picture.path().string() + "\n" +
+            plots_table(plots.title, plots.sheet, rows, plots.remarks, plots.table));
 }
 
 int run(ReproduceRequest const& o)

@@ -22,7 +22,7 @@ constexpr float kGrid[4] = {0.87f, 0.88f, 0.90f, 1}, kFrame[4] = {0.45f, 0.46f, 
 constexpr float kColors[][4] = {{0.00f, 0.45f, 0.70f, 1}, {0.84f, 0.37f, 0.00f, 1},
                                 {0.00f, 0.62f, 0.45f, 1}, {0.80f, 0.47f, 0.65f, 1},
                                 {0.90f, 0.62f, 0.00f, 1}, {0.34f, 0.71f, 0.91f, 1},
-                                {0.15f, 0.16f, 0.20f, 1}};
+                                {0.15f, 0.16f, 0.20f, 1}, {0.55f, 0.36f, 0.20f, 1}};
 
 struct Extent {
     double low = 0, high = 0;
@@ -79,7 +79,7 @@ void line(ImageBuf& image, ROI const& clip, float const (&color)[4], double widt
 // Of marker and line: where curves run on each other, those below can be seen at both sides.
 double shrunk(std::size_t which)
 {
-    return 1 - 0.13 * double(std::min<std::size_t>(which, 4));
+    return 1 - 0.13 * double(std::min<std::size_t>(which % std::size(kColors), 4));
 }
 
 // Disc, square, triangle, diamond, downward triangle: in turn.
@@ -112,6 +112,17 @@ int width_of(std::string const& text)
     return Algo::text_size(text, kText, kFont).width();
 }
 
+constexpr int kSample = 34; // of a curve, in a legend
+
+void draw_sample(ImageBuf& image, std::size_t which, int x, int y, std::string const& name)
+{
+    ROI const all(0, image.spec().width, 0, image.spec().height);
+    line(image, all, kColors[which % std::size(kColors)], 2.6 * shrunk(which), x, y, x + kSample,
+         y);
+    marker(image, which, x + kSample / 2.0, y);
+    write_text(image, x + kSample + 6, y, name, Align::Left, kText);
+}
+
 // From bottom to top, its middle at y.
 void upright_text(ImageBuf& image, int x, int y, std::string const& text)
 {
@@ -139,6 +150,7 @@ public:
         grid();
         for (PlotSeries const& s : plot.series) lines(s);
         for (PlotSeries const& s : plot.series) markers(s);
+        if (sheet_.legend == PlotSheet::Legend::Inside) legend();
         box();
         write_text(image_, (frame_.xbegin + frame_.xend) / 2, frame_.ybegin - kTitle / 2,
                    plot.title, Align::Center);
@@ -200,6 +212,22 @@ private:
         write_text(image_, at_left ? at - 10 : at + 10, int(y(p.y)), p.label,
                    at_left ? Align::Right : Align::Left, kText);
     }
+    bool in_legend(PlotSeries const& s) const
+    {
+        auto const& names = layout_.names();
+        return std::find(names.begin(), names.end(), s.name) != names.end();
+    }
+    void legend() const
+    {
+        constexpr int kLine = 20;
+        auto const& series = sheet_.panels[number_].series;
+        int y = frame_.yend - kInset - kLine / 2;
+        for (auto s = series.rbegin(); s != series.rend(); ++s) {
+            if (!in_legend(*s)) continue;
+            draw_sample(image_, place(*s), frame_.xbegin + kInset, y, s->name);
+            y -= kLine;
+        }
+    }
     std::size_t place(PlotSeries const& s) const
     {
         auto const& names = layout_.names();
@@ -231,7 +259,7 @@ private:
 
 void draw_legend(ImageBuf& image, PlotLayout const& layout)
 {
-    constexpr int kSample = 34, kBetween = 26;
+    constexpr int kBetween = 26;
     int length = -kBetween;
     for (std::string const& name : layout.names())
         length += kSample + 6 + width_of(name) + kBetween;
@@ -239,10 +267,7 @@ void draw_legend(ImageBuf& image, PlotLayout const& layout)
     int const y = layout.height() - kLegend / 2 - 4;
     for (std::size_t i = 0; i < layout.names().size(); ++i) {
         std::string const& name = layout.names()[i];
-        ROI const all(0, layout.width(), 0, layout.height());
-        line(image, all, kColors[i % std::size(kColors)], 2.6 * shrunk(i), x, y, x + kSample, y);
-        marker(image, i, x + kSample / 2.0, y);
-        write_text(image, x + kSample + 6, y, name, Align::Left, kText);
+        draw_sample(image, i, x, y, name);
         x += kSample + 6 + width_of(name) + kBetween;
     }
 }
@@ -298,8 +323,9 @@ PlotLayout::PlotLayout(PlotSheet const& sheet)
                 names_.push_back(s.name);
     int const rows = (int(sheet.panels.size()) + columns_ - 1) / columns_;
     width_ = kLeft + columns_ * (panel_width_ + kGap) - kGap + kRight;
-    height_ = rows * (kTitle + panel_height_) + kTicks + kAxisName +
-              (names_.empty() ? kGap / 2 : kLegend + 6);
+    height_ =
+        rows * (kTitle + panel_height_) + kTicks + kAxisName +
+        (names_.empty() || sheet.legend == PlotSheet::Legend::Inside ? kGap / 2 : kLegend + 6);
 }
 
 int PlotLayout::left(std::size_t panel) const
@@ -328,7 +354,7 @@ void write_plots(PlotSheet const& sheet, OutputFile& out)
     PlotLayout const layout(sheet);
     ImageBuf image = blank_paper(layout.width(), layout.height());
     for (std::size_t i = 0; i < sheet.panels.size(); ++i) Panel(image, sheet, layout, i).draw();
-    draw_legend(image, layout);
+    if (sheet.legend == PlotSheet::Legend::Below) draw_legend(image, layout);
     write_image(image, out);
 }
 

@@ -43,6 +43,11 @@ struct PlotSheet {
     std::vector<Plot> panels; ///< row after row
     int columns = 1;
     int panel_width = 290, panel_height = 230; ///< pixels, of the frame
+    enum class Legend {
+        Below, ///< a line for all panels
+        Inside ///< each panel's own curves, in its lower left corner
+    };
+    Legend legend = Legend::Below;
 };
 
 /// A logarithmic scale from a power of its base to another.

@@ -403,7 +403,7 @@ std::string paper_report(ReportHeader const& header, std::string const& title,
 
 std::string plots_report(ReportHeader const& header, std::string const& title,
                          PlotSheet const& sheet, std::vector<ClaimRow> const& claims,
-                         std::vector<std::string> const& remarks)
+                         std::vector<std::string> const& remarks, NumberTable const& table)
 {
     Json j = start(header);
     j["title"] = title;
@@ -429,6 +429,13 @@ std::string plots_report(ReportHeader const& header, std::string const& title,
                                {"ours", c.ours},
                                {"bound", c.bound},
                                {"other_readings", c.other_readings}});
+    for (NumberTable::Row const& r : table.rows) {
+        Json row{{table.name, r.name}};
+        for (std::size_t i = 0; i < table.columns.size(); ++i)
+            if (!std::isnan(r.numbers[i])) row[table.columns[i]] = r.numbers[i];
+        row[table.note] = r.note;
+        j["table"].push_back(std::move(row));
+    }
     j["remarks"] = remarks;
     return finish(std::move(j), header, [](Sha256&) {});
 }

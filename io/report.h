@@ -6,6 +6,7 @@
 #include "emu/graphics_state.h"
 #include "emu/statistics.h"
 #include "io/mesh_writer.h"
+#include "io/number_table.h"
 #include "io/plot.h"
 #include "io/tessellator_text.h"
 #include "pipeline/basis_tables/table_set.h"
@@ -135,13 +136,14 @@ struct ClaimRow {
     std::string letter, claim, verdict, criterion, ours, bound;
     std::vector<std::string> other_readings; ///< what it says under others
 };
-/// reproduce of curves: "plots" with each point and what bounds it, "claims".
+/// reproduce of curves: "plots" with each point and what bounds it, "claims"; "table" where there is
+/// one, an object a row.
 std::string plots_report(ReportHeader const& header, std::string const& title,
                          PlotSheet const& sheet, std::vector<ClaimRow> const& claims,
-                         std::vector<std::string> const& remarks);
+                         std::vector<std::string> const& remarks, NumberTable const& table = {});
 std::string plots_table(std::string const& title, PlotSheet const& sheet,
                         std::vector<ClaimRow> const& claims,
-                        std::vector<std::string> const& remarks);
+                        std::vector<std::string> const& remarks, NumberTable const& table = {});
 
 /// A verdict of check, and what it fails on.
 struct VerdictSite {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace tessemu {
 
@@ -80,6 +81,66 @@ std::string valence_table(std::vector<PatchCount> const& patches)
                     : fmt::format("  {:<11} {:<7}", valences, n);
     }
     if (used.size() > kShown) out += fmt::format("  and {} more\n", used.size() - kShown);
+    return out;
+}
+
+std::string short_number(double x)
+{
+    return std::isnan(x) ? "-"
+           : x < 1000    ? fmt::format("{:.3g}", x)
+                         : counted(std::uint64_t(x + 0.5));
+}
+
+std::string number_table(NumberTable const& table)
+{
+    if (table.rows.empty()) return "";
+    std::size_t name = table.name.size();
+    std::vector<std::size_t> width;
+    for (std::string const& head : table.columns) width.push_back(head.size());
+    for (NumberTable::Row const& r : table.rows) {
+        name = std::max(name, r.name.size());
+        for (std::size_t i = 0; i < width.size(); ++i)
+            width[i] = std::max(width[i], short_number(r.numbers[i]).size());
+    }
+    auto const line = [&](std::string const& first, auto const& cell, std::string const& last) {
+        std::string out = fmt::format("{:<{}}", first, name);
+        for (std::size_t i = 0; i < width.size(); ++i)
+            out += fmt::format("  {:>{}}", cell(i), width[i]);
+        return out + "  " + last + "\n";
+    };
+    std::string out =
+        "\n" + line(
+                   table.name, [&](std::size_t i) { return table.columns[i]; }, table.note);
+    for (NumberTable::Row const& r : table.rows)
+        out += line(
+            r.name, [&](std::size_t i) { return short_number(r.numbers[i]); }, r.note);
+    return out;
+}
+
+// Every curve has points where the first one has.
+bool share_x(Plot const& panel)
+{
+    auto const& first = panel.series[0].points;
+    for (PlotSeries const& s : panel.series)
+        for (PlotPoint const& p : s.points)
+            if (std::none_of(first.begin(), first.end(), [&](auto const& q) { return q.x == p.x; }))
+                return false;
+    return true;
+}
+
+// Both coordinates of each curve's points.
+std::string pairs(Plot const& panel, PlotSheet const& sheet)
+{
+    std::string out = fmt::format("\n{}\n", panel.title);
+    for (PlotSeries const& s : panel.series) {
+        auto const line = [&](std::string const& head, std::string const& axis, auto const& of) {
+            out += fmt::format("  {:<30} {:<23}", head, axis);
+            for (PlotPoint const& p : s.points) out += fmt::format(" {:>8}", short_number(of(p)));
+            out += "\n";
+        };
+        line(s.name, sheet.x.name, [](PlotPoint const& p) { return p.x; });
+        line("", sheet.y.name, [](PlotPoint const& p) { return p.y; });
+    }
     return out;
 }
 
@@ -181,9 +242,12 @@ std::string paper_table(std::string const& title, std::vector<PaperRow> const& r
     std::string out = fmt::format("{}\n\n{:<38} {:<46} {:>9} {:>9} {:>6}\n", title, "", "", "paper",
                                   "ours", "ratio");
     std::string row;
+    auto const number = [](double x) {
+        return x < 1e4 ? fmt::format("{:>9.4g}", x) : fmt::format("{:>9.0f}", x); // triangles
+    };
     for (PaperRow const& r : rows) {
-        out += fmt::format("{:<38} {:<46} {:>9.4g} {:>9.4g} {:>6.2f}\n", r.row == row ? "" : r.row,
-                           r.column, r.paper, r.ours, r.ratio());
+        out += fmt::format("{:<38} {:<46} {} {} {:>6.2f}\n", r.row == row ? "" : r.row, r.column,
+                           number(r.paper), number(r.ours), r.ratio());
         row = r.row;
     }
     for (std::string const& remark : remarks) out += "\n" + remark + "\n";
@@ -192,18 +256,30 @@ std::string paper_table(std::string const& title, std::vector<PaperRow> const& r
 
 std::string plots_table(std::string const& title, PlotSheet const& sheet,
                         std::vector<ClaimRow> const& claims,
-                        std::vector<std::string> const& remarks)
+                        std::vector<std::string> const& remarks, NumberTable const& table)
 {
-    std::string out = title + "\n";
+    std::string out = title + "\n" + number_table(table);
     for (Plot const& panel : sheet.panels) {
         if (panel.series.empty()) continue;
+        if (!share_x(panel)) {
+            out += pairs(panel, sheet);
+            continue;
+        }
         out += fmt::format("\n{:<32} {:>16}", panel.title, sheet.x.name);
         for (PlotPoint const& p : panel.series[0].points) out += fmt::format(" {:>8.6g}", p.x);
         out += "\n";
         for (PlotSeries const& s : panel.series) {
             out += fmt::format("  {:<47}", s.name);
-            for (PlotPoint const& p : s.points)
-                out += p.y < 1000 ? fmt::format(" {:>8.4g}", p.y) : fmt::format(" {:>8.0f}", p.y);
+            auto next = s.points.begin();
+            for (PlotPoint const& p : panel.series[0].points) {
+                if (next == s.points.end() || next->x != p.x) {
+                    out += fmt::format(" {:>8}", "");
+                    continue;
+                }
+                double const y = next++->y;
+                out += y < 1000 ? fmt::format(" {:>8.4g}", y) : fmt::format(" {:>8.0f}", y);
+            }
+            out.erase(out.find_last_not_of(' ') + 1);
             out += "\n";
         }
     }

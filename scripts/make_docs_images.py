@@ -40,12 +40,17 @@ def subdivision():
 def figures():
     for number in (1, 9, 11):
         run("reproduce", "loop09-figure%d" % number, "--models", "nowhere", "-o", str(OUT / ("figure%d.png" % number)))
+    for number in (4, 5, 6, 7):
+        run("reproduce", "holl10-figure%d" % number, "--models", "nowhere",
+            "-o", str(OUT / ("holl10_figure%d.png" % number)))
     run("cost", "golem", "--tess", "24", "-o", str(OUT / "roofline.png"))
+    run("reproduce", "schemes", "-o", str(OUT / "schemes.png"))
     cages = ROOT.parent / "shared" / "models"  # the paper's own are not the project's to give
     if cages.is_dir():
         for number in (4, 5):
             run("reproduce", "loop10-figure%d" % number, "--models", str(cages),
                 "-o", str(OUT / ("loop10_figure%d.png" % number)))
+        run("reproduce", "holl10-figure8", "--models", str(cages), "-o", str(OUT / "holl10_figure8.png"))
     with tempfile.TemporaryDirectory() as folder:
         run("draw", "golem", "--animate", "sway", "--frames", "4", "--tess", "16", "--size", "320x320", "--samples", "4",
             "--camera", "from=.3,.2,1", "-o", folder + "/sway.png")

@@ -15,6 +15,11 @@ install_packages() { # further lists may be named
     DEBIAN_FRONTEND=noninteractive $sudo apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
+# A file that any clone here has compiled before is not compiled again; the instruction set that
+# "native" stands for is a part of its key.
+export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+export CCACHE_COMPILERCHECK='%compiler% -march=native -dM -E -x c++ /dev/null'
+
 build() {
     install_packages
     cmake --preset "$1" >/dev/null

@@ -6,6 +6,7 @@
 
 #include "emu/graphics_state.h"
 #include "io/gpu_model.h"
+#include "io/number_table.h"
 #include "io/plot.h"
 #include "pipeline/frame.h"
 
@@ -63,6 +64,7 @@ struct PaperPlots {
     PlotSheet sheet; ///< points' labels say what bounds them
     std::vector<PaperClaim> claims;
     std::vector<std::string> remarks;
+    NumberTable table = {}; ///< beside the curves
 };
 
 /// (done, all) steps

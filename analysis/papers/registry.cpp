@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/papers/bolz03/items.h"
+#include "analysis/papers/holl10/items.h"
 #include "analysis/papers/loop09/items.h"
 #include "analysis/papers/loop10/items.h"
 #include "analysis/papers/paper.h"
+#include "analysis/papers/schemes/items.h"
 
 namespace tessemu {
 
@@ -10,7 +12,8 @@ std::vector<PaperItem> const& paper_items()
 {
     static std::vector<PaperItem> const all = [] {
         std::vector<PaperItem> items;
-        for (auto const& paper : {bolz03_items(), loop09_items(), loop10_items()})
+        for (auto const& paper :
+             {bolz03_items(), loop09_items(), loop10_items(), holl10_items(), schemes_items()})
             items.insert(items.end(), paper.begin(), paper.end());
         return items;
     }();

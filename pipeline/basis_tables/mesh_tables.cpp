@@ -46,6 +46,20 @@ TypeOfTables rounded(LocalMesh const& type, LocalTables const& t,
 
 } // namespace
 
+TableVertex make_table_vertex(Topology const& t, std::uint32_t v, std::size_t first,
+                              std::size_t faces, bool is_open, std::vector<std::uint32_t>& rings)
+{
+    auto const ring = t.ring(v);
+    TableVertex out{v, std::uint32_t(rings.size()), 0, is_open};
+    auto const edge_end = [&](std::size_t j) {
+        return j == ring.size() && t.is_boundary(v) ? t.vertex_of(t.previous(ring.back()))
+                                                    : t.vertex_of(t.next(ring[j % ring.size()]));
+    };
+    out.ring = std::uint32_t(faces + (is_open ? 1 : 0));
+    for (std::size_t j = 0; j < out.ring; ++j) rings.push_back(edge_end(first + j));
+    return out;
+}
+
 MeshTables::MeshTables(Topology const& topology, Make const& make, Options options,
                        Progress const& progress)
 {
@@ -127,16 +141,7 @@ void MeshTables::add_vertices(Topology const& topology, LocalMeshFinder const& f
             if (sector[h] != sector[corners[i][0]]) is_whole[points_[i].vertex] = 1;
     std::vector<std::uint32_t> number(mesh.face_vertices.size()); // by first half-edge of a sector
     auto const add = [&](std::uint32_t v, std::size_t first, std::size_t faces, bool is_open) {
-        auto const ring = topology.ring(v);
-        TableVertex out{v, std::uint32_t(rings_.size()), 0, is_open};
-        auto const edge_end = [&](std::size_t j) {
-            return j == ring.size() && topology.is_boundary(v)
-                       ? topology.vertex_of(topology.previous(ring.back()))
-                       : topology.vertex_of(topology.next(ring[j % ring.size()]));
-        };
-        out.ring = std::uint32_t(faces + (is_open ? 1 : 0));
-        for (std::size_t j = 0; j < out.ring; ++j) rings_.push_back(edge_end(first + j));
-        return out;
+        return make_table_vertex(topology, v, first, faces, is_open, rings_);
     };
     for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
         auto const ring = topology.ring(v);

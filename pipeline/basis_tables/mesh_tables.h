@@ -29,6 +29,10 @@ struct TableVertex {
     bool is_open;
 };
 
+/// Of a vertex and `faces` of its faces from ring(v)[first] on; appends its ring to `rings`.
+TableVertex make_table_vertex(Topology const& topology, std::uint32_t v, std::size_t first,
+                              std::size_t faces, bool is_open, std::vector<std::uint32_t>& rings);
+
 class MeshTables {
 public:
     static constexpr int kSteps = 5; ///< tables of level 5: 32 segments (HOLL10 2A)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/commands/direct3d10.h"
 
+#include "pipeline/commands/refinement_pattern.h"
+
 #include <algorithm>
 #include <numeric>
 
@@ -168,6 +170,8 @@ private:
 std::shared_ptr<DomainPoints const> refinement_pattern(TessellatorDomain domain,
                                                        SurfaceSettings const& settings)
 {
+    if (settings.pattern == RefinementPattern::Uniform)
+        return uniform_pattern(domain, uniform_segments(settings.tess_factor));
     TessFactors factors;
     factors.fill(settings.tess_factor);
     TessellatorCache cache(

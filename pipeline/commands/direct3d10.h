@@ -2,10 +2,10 @@
 // domain shader.
 //
 // A geometry shader does the hull shader's work and streams the control points out. A second draw
-// has a refinement pattern as its vertices, the tessellator's domain points for one uniform factor
-// (Boubekeur and Schlick's kernel), and an instance for each patch: its vertex shader does the
-// domain shader's work and loads control points from the streamed buffer. The programs are the
-// scheme's own, so the surface has the same bits.
+// has a refinement pattern as its vertices (Boubekeur and Schlick's kernel), the tessellator's
+// domain points for one uniform factor or a uniform grid, and an instance for each patch: its
+// vertex shader does the domain shader's work and loads control points from the streamed buffer.
+// The programs are the scheme's own, so the surface has the same bits.
 //
 // Two liberties: the first draw has patch lists, which Direct3D 11 gives to geometry shaders
 // and Direct3D 10 did not have, where the vertices would come by adjacency or from a buffer; and

@@ -4,6 +4,8 @@
 #include "pipeline/commands/displacement.h"
 #include "pipeline/commands/subdivision.h"
 
+#include <cassert>
+
 namespace tessemu {
 
 AnotherWay another_way_of(std::size_t patches, std::uint32_t first_face, std::string const& what)
@@ -64,6 +66,16 @@ VertexSource add_vertices(CommandList& list, RefinedMesh const& refined,
     }
     add_subdivision(list, refined.tables(), *points, settings.machine);
     return {std::span(*points).subspan(first * kStride), 3, int(kStride)};
+}
+
+VertexSource file_vertices(RefinedMesh const& mesh, VertexSource const& drawn)
+{
+    assert(mesh.steps() > 0);
+    // At the front of the buffer whose end is drawn.
+    constexpr std::size_t kStride = RWVectorBuffer::kStride;
+    std::size_t const before = mesh.tables().back().first_face_point() * kStride;
+    return {
+        {drawn.floats.data() - before, mesh.base().positions.size() * kStride}, 3, int(kStride)};
 }
 
 std::span<float const> add_pole_normals(CommandList& list, Poles const& poles,

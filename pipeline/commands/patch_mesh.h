@@ -94,6 +94,10 @@ struct DrawnMesh {
 DrawnMesh drawn_mesh(RefinedMesh const& mesh, SurfaceSettings const& settings,
                      ThreadPool const& threads);
 
+/// The file's vertices, in the pose too, of a mesh that steps were taken of.
+/// \param drawn  what add_vertices() gave, without texels and origin
+VertexSource file_vertices(RefinedMesh const& mesh, VertexSource const& drawn);
+
 /// Appends a dispatch of the poles' normals, where there are poles; PoleNormals reads them.
 ///
 /// \param name       of the dispatch

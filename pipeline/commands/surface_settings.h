@@ -13,10 +13,17 @@ namespace tessemu {
 
 class Displacement;
 
+/// Where the points of a patch come from on the Direct3D 10 path.
+enum class RefinementPattern {
+    Tessellator, ///< the tessellator's, of the tess factor and partitioning
+    Uniform,     ///< all at i/n, n the tess factor rounded up to a power of two
+};
+
 struct SurfaceSettings {
     float tess_factor = 1;        ///< uniform; every edge and the inside of a patch
     TessFactorRule adaptive_rule; ///< instead of it, unless its kind is Uniform
     Partitioning partitioning = Partitioning::FractionalOdd;
+    RefinementPattern pattern = RefinementPattern::Tessellator; ///< Direct3D 10 path only
     Machine machine;
     bool true_normals = false; ///< interior normals of the rational surface, not of frozen F
     std::shared_ptr<Displacement const> displacement; ///< none: the smooth surface

@@ -2,6 +2,7 @@
 #include "pipeline/forms/table_form.h"
 
 #include "pipeline/commands/refinement_pattern.h"
+#include "pipeline/commands/subdivision.h"
 #include "pipeline/forms/table_shaders.h"
 #include "shaders_cpp/bolz/patch_constants_shader.h"
 #include "shaders_cpp/pass_through.h"
@@ -34,7 +35,12 @@ PatchKind kind_of(LocalMesh const& type)
 
 } // namespace
 
-std::vector<SchemeParameter> TableForm::parameters(bool has_tangents)
+int TableForm::more_steps(Parameters const& parameters, int steps)
+{
+    return std::max(0, std::stoi(parameters.word("shading")) - steps);
+}
+
+std::vector<SchemeParameter> TableForm::parameters(bool has_tangents, int steps)
 {
     std::vector<SchemeParameter> out{
         {"mesher",
@@ -51,6 +57,16 @@ std::vector<SchemeParameter> TableForm::parameters(bool has_tangents)
          0,
          0,
          {"enforced", "unenforced"}}};
+    // Of the mesh that the tables start from, of the file's, or a step later.
+    SchemeParameter shading{"shading",
+                            "steps of subdivision after which normals are taken of the faces; "
+                            "from there on they are subdivided as positions are",
+                            0,
+                            0,
+                            0,
+                            {std::to_string(steps), "0"}};
+    if (steps < 2) shading.words.push_back("2");
+    out.insert(out.begin() + 1, std::move(shading));
     if (has_tangents)
         out.insert(
             out.begin() + 1,
@@ -69,6 +85,7 @@ TableForm::TableForm(std::shared_ptr<RefinedMesh const> refined, Rules const& ru
     : PatchMesh(std::move(refined)),
       mesher_(parameters.word("mesher") == "pattern" ? Mesher::Pattern : Mesher::Tessellator),
       normals_(rules.has_tangents && parameters.word("normals") == "tangents" ? Normals::Tangents
+               : parameters.word("shading") == "0"                            ? Normals::Carried
                                                                               : Normals::Shading),
       tables_(
           mesh().topology(), rules.make,
@@ -85,6 +102,14 @@ TableForm::TableForm(std::shared_ptr<RefinedMesh const> refined, Rules const& ru
     }
     add_kinds();
     if (normals_ == Normals::Tangents) add_corner_terms();
+    if (normals_ != Normals::Carried) return;
+    Topology const& base = mesh().base_topology();
+    std::vector<TableVertex> vertices;
+    for (std::uint32_t v = 0; v < mesh().base().positions.size(); ++v)
+        vertices.push_back(make_table_vertex(base, v, 0, base.ring(v).size(),
+                                             base.ring(v).empty() || base.is_boundary(v),
+                                             file_rings_));
+    file_entries_ = entries(vertices);
 }
 
 std::vector<std::uint32_t> TableForm::entries(std::span<TableVertex const> vertices)
@@ -190,24 +215,60 @@ void TableForm::add_kinds()
     std::erase_if(kinds_, [](Kind const& k) { return k.places.empty(); });
 }
 
+std::span<float const> TableForm::add_table_vertices(CommandList& list,
+                                                     VertexSource const& positions,
+                                                     SurfaceSettings const& s) const
+{
+    std::size_t const count = tables_.vertices().size();
+    auto const vertices =
+        std::make_shared<std::vector<float>>(count * std::size_t(TableVertices::kFloats));
+    list.memory.push_back(vertices);
+    auto const add = [&](char const* name, auto const& shader, std::size_t threads) {
+        list.commands.emplace_back(
+            Dispatch{name, bind_compute_shader(shader, s.machine), groups_for(threads, 64)});
+    };
+    if (normals_ != Normals::Carried) {
+        TableVerticesShader cs;
+        // Displaced, both sides of a crease have to move along one normal.
+        cs.mesh = {{s.displacement ? wholes_ : sectors_, 0, "vertex_entries"},
+                   {tables_.rings(), 1, "rings"},
+                   {positions.floats, 2, "positions"},
+                   positions.stride};
+        cs.vertices.floats = {*vertices, 3, "table_vertices"};
+        add("vertex normals", cs, count);
+        return *vertices;
+    }
+    VertexSource const file = file_vertices(mesh(), positions);
+    std::size_t const file_count = mesh().base().positions.size(),
+                      first = mesh().tables().back().first_face_point();
+    auto const normals = std::make_shared<std::vector<float>>(
+        (first + mesh().mesh().positions.size()) * RWVectorBuffer::kStride);
+    list.memory.push_back(normals);
+    MeshNormalsShader cs;
+    cs.mesh = {{file_entries_, 0, "vertex_entries"},
+               {file_rings_, 1, "rings"},
+               {file.floats, 2, "positions"},
+               file.stride};
+    cs.normals = {std::span(*normals).first(file.floats.size()), 3, "normals"};
+    add("vertex normals", cs, file_count);
+    add_subdivision(list, mesh().tables(), *normals, s.machine);
+    CarriedVerticesShader carried;
+    carried.entries = {sectors_, 0, "vertex_entries"};
+    carried.positions = {positions.floats, 1, "positions"};
+    carried.normals = {std::span<float const>(*normals).subspan(first * RWVectorBuffer::kStride), 2,
+                       "normals"};
+    carried.vertices.floats = {*vertices, 3, "table_vertices"};
+    carried.stride = positions.stride;
+    add("vertices", carried, count);
+    return *vertices;
+}
+
 CommandList TableForm::commands(SurfaceSettings const& s) const
 {
     CommandList list;
     if (kinds_.empty()) return list;
     VertexSource const positions = add_vertices(list, mesh(), s);
-    auto const vertices = std::make_shared<std::vector<float>>(
-        tables_.vertices().size() * std::size_t(TableVerticesShader::kFloats));
-    list.memory.push_back(vertices);
-    TableVerticesShader cs;
-    // Displaced, both sides of a crease have to move along one normal.
-    cs.entries = {s.displacement ? wholes_ : sectors_, 0, "vertex_entries"};
-    cs.rings = {tables_.rings(), 1, "rings"};
-    cs.positions = {positions.floats, 2, "positions"};
-    cs.vertices = {*vertices, 3, "table_vertices"};
-    cs.stride = positions.stride;
-    list.commands.emplace_back(Dispatch{"vertex normals", bind_compute_shader(cs, s.machine),
-                                        groups_for(tables_.vertices().size(), 64)});
-    Sources from{positions, *vertices, {}, 0};
+    Sources from{positions, add_table_vertices(list, positions, s), {}, 0};
     if (mesher_ == Mesher::Pattern) {
         if (s.adaptive_rule.kind != TessFactorRule::Kind::Uniform)
             throw Error("mesher=pattern refines every patch alike: it takes no factors by edge "

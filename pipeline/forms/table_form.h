@@ -32,7 +32,9 @@ public:
     std::vector<std::string> warnings() const override { return warnings_; }
     bool has_creases() const override
     {
-        return normals_ == Normals::Tangents ? tables_.has_sharp_edges() : tables_.has_creases();
+        return normals_ == Normals::Tangents
+                   ? tables_.has_sharp_edges()
+                   : normals_ == Normals::Shading && tables_.has_creases();
     }
 
     MeshTables const& tables() const { return tables_; }
@@ -40,10 +42,13 @@ public:
     /// Of which normals are.
     enum class Normals {
         Shading,  ///< summed as positions are (subdivision shading)
+        Carried,  ///< the same from the file's mesh on: its steps carry the normals along
         Tangents, ///< of the surface, from tables of tangents
     };
-    /// "mesher", "normals" of masks that have tangents, "tables".
-    static std::vector<SchemeParameter> parameters(bool has_tangents);
+    /// "mesher", "normals" of masks that have tangents, "shading", "tables".
+    static std::vector<SchemeParameter> parameters(bool has_tangents, int steps);
+    /// Of subdivision, that "shading" asks for.
+    static int more_steps(Parameters const& parameters, int steps);
     /// How tables are made by a scheme's masks: in double, or, where they are not enforced, as they
     /// come of each patch alone in single precision.
     template <class Masks> static Rules rules(Parameters const& parameters)
@@ -85,7 +90,10 @@ private:
     template <class Samples>
     void add_draw(CommandList& list, Kind const& kind, Sources const& from,
                   SurfaceSettings const& settings) const;
-    /// TableVerticesShader's entries.
+    /// \returns  TableBuffers::vertices
+    std::span<float const> add_table_vertices(CommandList& list, VertexSource const& positions,
+                                              SurfaceSettings const& settings) const;
+    /// VertexRings::entries.
     static std::vector<std::uint32_t> entries(std::span<TableVertex const> vertices);
 
     Mesher mesher_;
@@ -97,8 +105,9 @@ private:
     // CornerNormalShader's, by sector of a vertex.
     std::vector<std::uint32_t> corners_, corner_terms_;
     std::vector<float> corner_weights_;
-    std::vector<std::uint32_t> points_;           ///< TableBuffers::points
-    std::vector<std::uint32_t> sectors_, wholes_; ///< of the vertices; whatever is sharp
+    std::vector<std::uint32_t> points_;                    ///< TableBuffers::points
+    std::vector<std::uint32_t> sectors_, wholes_;          ///< of the vertices; whatever is sharp
+    std::vector<std::uint32_t> file_entries_, file_rings_; ///< of the file's, where Carried
     std::vector<Kind> kinds_;
 };
 

@@ -371,7 +371,9 @@ SchemeOnMesh refine(SchemeInfo const& info, Scheme const* scheme, ControlMesh me
         sides.polygons += n > 4;
         sides.triangles += n == 3;
     }
-    int const own = steps_of(info.takes, sides, 0), steps = own + options.subdivide;
+    int const own = steps_of(info.takes, sides, 0),
+              more = scheme ? scheme->more_steps(out.parameters) : 0,
+              steps = own + options.subdivide + more;
     bool const sorts = resolve_sort(info, steps, out.parameters);
     if (must_be_taken) // before the work
         refuse(info, facts_of(Topology(mesh)), options.subdivide, !options.strict);

@@ -104,6 +104,8 @@ public:
                            WarningSink const& /*warn*/) const
     {
     }
+    /// Of subdivision, beyond what info().takes asks for.
+    virtual int more_steps(Parameters const& /*parameters*/) const { return 0; }
     /// \param mesh        that meets info().takes
     /// \param parameters  all of info().parameters
     /// \param services    not kept

@@ -40,7 +40,7 @@ template <int n, class T, class Of> auto weighted_sum(TablePlace<T, n> const& pl
 struct TableBuffers {
     Buffer<std::uint32_t> patches; ///< [patch][3]: its first point, points, the first table entry
     Buffer<std::uint32_t> points;  ///< [point][2]: vertex; column of the tables
-    Buffer<float> vertices;        ///< [vertex][TableVerticesShader::kFloats]
+    Buffer<float> vertices;        ///< [vertex][TableVertices::kFloats]
     Buffer<float> tables;          ///< [type][column][sample]
     int samples = 0;               ///< of a table
 
@@ -74,7 +74,7 @@ struct TableBuffers {
     /// Position (0) or normal (3) of a vertex.
     template <class T> float3<T> vector(std::int32_t vertex, int first) const
     {
-        std::int32_t const at = vertex * TableVerticesShader::kFloats + first;
+        std::int32_t const at = vertex * TableVertices::kFloats + first;
         return {load<T>(vertices, at), load<T>(vertices, at + 1), load<T>(vertices, at + 2)};
     }
 };

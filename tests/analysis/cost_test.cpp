@@ -7,6 +7,7 @@
 #include "io/gpu_file.h"
 #include "io/model.h"
 #include "tests/support/files.h"
+#include "tests/support/fitted_table.h"
 #include "tests/support/printed.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <regex>
 
 namespace tessemu {
 namespace {
@@ -286,28 +286,6 @@ TEST(Gpu, TheCardOfBolz03HasThePapersNumbers)
     for (auto const& [place, source] : m.sources) EXPECT_GT(source.size(), 20u) << place;
 }
 
-// The built-in description's two fitted numbers are what a fit gives today, to the digits that the
-// file has.
-void expect_stored(char const* name, GpuModel const& fitted)
-{
-    std::string const json = test::read_text(test::source(std::string("gpus/") + name + ".json"));
-    auto const stored = [&](std::string const& place) {
-        std::smatch match;
-        EXPECT_TRUE(std::regex_search(json, match, std::regex(place + R"(: \{"value": ([^,]+),)")));
-        return test::printed(match[1]);
-    };
-    EXPECT_TRUE(stored(R"("any")").rounds_from(fitted.any_fetch)) << fitted.any_fetch;
-    EXPECT_TRUE(stored(R"("overhead")").rounds_from(fitted.overhead)) << fitted.overhead;
-}
-
-std::map<std::string, PaperCell> by_row(PaperTable const& table, std::string const& column)
-{
-    std::map<std::string, PaperCell> out;
-    for (PaperCell const& c : table.cells)
-        if (c.column == column) out[c.row] = c;
-    return out;
-}
-
 // What least squares of relative errors r = (predicted - t) / t give, whatever the cells count:
 // the sum of r / t, its derivative by the overhead, is 0 but for rounding; and a cell's error
 // without the cell is r / (1 - h), 0 < h < 1, so it grows.
@@ -316,8 +294,8 @@ std::map<std::string, PaperCell> by_row(PaperTable const& table, std::string con
 void expect_least_squares(PaperTable const& table, std::string const& column,
                           double (*seconds_of)(double))
 {
-    auto const all = by_row(table, column),
-               out = by_row(table, column + ", cell left out of the fit");
+    auto const all = test::by_row(table, column),
+               out = test::by_row(table, column + ", cell left out of the fit");
     ASSERT_EQ(all.size(), out.size());
     double sum = 0, size = 0;
     for (auto const& [row, c] : all) {
@@ -336,13 +314,13 @@ TEST(Loop09Table1, RatiosWithinAFormAreThePapers)
 {
     TimingTable const t = reproduce_loop09_table1(
         load_model("golem").mesh, load_gpu_model("loop09-emulator"), {}, ThreadPool(), {});
-    expect_stored("loop09-emulator", t.gpu);
+    test::expect_stored("loop09-emulator", t.gpu);
     expect_least_squares(t.table, "ms", [](double ms) { return 1e-3 * ms; });
 
     constexpr char const* kPage = "docs/cost.md";
     auto const said = test::said_in(kPage, R"(ACC/Gregory ([\d.]+) \(paper ([\d.]+)\), )"
                                            R"(Pm/Gregory ([\d.]+) \(paper ([\d.]+)\))");
-    auto const ratios = by_row(t.table, "ratio of times");
+    auto const ratios = test::by_row(t.table, "ratio of times");
     ASSERT_EQ(ratios.size(), 2u);
     ASSERT_EQ(said.size(), 4u);
     PaperCell const acc = ratios.at("N = 10, stencil: ACC / Gregory"),
@@ -354,7 +332,7 @@ TEST(Loop09Table1, RatiosWithinAFormAreThePapers)
     EXPECT_GT(acc.ours, 1);
     EXPECT_GT(pm.ours, 1);
 
-    auto const ms = by_row(t.table, "ms");
+    auto const ms = test::by_row(t.table, "ms");
     EXPECT_EQ(ms.size(), 6u);
     double worst = 0;
     for (auto const& [row, c] : ms) worst = std::max(worst, 100 * std::abs(c.ours / c.paper - 1));
@@ -377,7 +355,7 @@ TEST(Loop09Table2, EveryCellIsAsCloseToThePaperAsThePagesPromise)
     }
     TimingTable const t =
         reproduce_loop09_table2(meshes, load_gpu_model("gtx260"), {}, ThreadPool(), {});
-    expect_stored("gtx260", t.gpu);
+    test::expect_stored("gtx260", t.gpu);
 
     constexpr char const* kPage = "docs/cost.md";
     auto const readme = test::said_in("README.md", R"(comes out within (\d+) % from counters)");
@@ -388,9 +366,9 @@ TEST(Loop09Table2, EveryCellIsAsCloseToThePaperAsThePagesPromise)
     auto const fit =
         test::said_in(kPage, R"(The fit says ([\d.]+) ms a frame and ([\d.e]+) fetches a second)");
     ASSERT_EQ(readme.size() + said.size() + fit.size(), 6u);
-    auto const fps = by_row(t.table, "frames a second"),
-               left_out = by_row(t.table, "frames a second, cell left out of the fit"),
-               ratios = by_row(t.table, "time / Gregory's");
+    auto const fps = test::by_row(t.table, "frames a second"),
+               left_out = test::by_row(t.table, "frames a second, cell left out of the fit"),
+               ratios = test::by_row(t.table, "time / Gregory's");
     ASSERT_EQ(fps.size(), 12u);
     ASSERT_EQ(left_out.size(), 12u);
     ASSERT_EQ(ratios.size(), 8u);

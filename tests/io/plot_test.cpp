@@ -146,6 +146,24 @@ TEST(Plot, SeriesDifferInColourAndKeepItOnAllPanels)
     EXPECT_EQ(d.at(0, 2, 10), d.at(1, 2, 100));
 }
 
+// The second panel's only curve is the second of the sheet: its sample lies where the first's would.
+TEST(Plot, ALegendInsideAPanelHasItsOwnCurves)
+{
+    PlotSheet sheet =
+        sheet_of({{"a", {{"one", {{1, 10}, {8, 90}}}}}, {"b", {{"two", {{1, 10}, {8, 90}}}}}}, 2);
+    int const below = PlotLayout(sheet).height();
+    sheet.legend = PlotSheet::Legend::Inside;
+    Drawn const d(sheet);
+    EXPECT_LT(d.layout().height(), below) << "no line for it";
+    auto const sample = [&](std::size_t panel) {
+        return d.pixel(d.layout().left(panel) + 18,
+                       d.layout().top(panel) + sheet.panel_height - 22);
+    };
+    EXPECT_TRUE(is_blue(sample(0)));
+    EXPECT_FALSE(is_paper(sample(1)));
+    EXPECT_FALSE(is_blue(sample(1)));
+}
+
 TEST(Plot, ASinglePointIsDrawnAndNoneIsRefused)
 {
     EXPECT_TRUE(is_blue(Drawn(sheet_of({{"a", {{"s", {{4, 100}}}}}})).at(0, 4, 100)));

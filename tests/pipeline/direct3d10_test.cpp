@@ -4,6 +4,7 @@
 #include "pipeline/commands/direct3d10.h"
 
 #include "io/model.h"
+#include "pipeline/commands/refinement_pattern.h"
 #include "pipeline/frame.h"
 #include "pipeline/schemes/scheme.h"
 #include "tests/emu/suite_facts/patches.h"
@@ -13,6 +14,8 @@
 
 #include <bit>
 #include <cstring>
+#include <map>
+#include <set>
 
 namespace tessemu {
 namespace {
@@ -170,6 +173,92 @@ TEST(Direct3D10, RefusesAdaptiveFactors)
     s.direct3d10 = true;
     s.adaptive.kind = AdaptiveFactors::Kind::Pixels;
     EXPECT_THROW(visit_surface(*m.patches, s, ThreadPool(), {}), Error);
+}
+
+// Twice the signed area of a pattern's triangle in (u, v).
+double doubled_area(DomainPoints const& p, std::size_t triangle)
+{
+    auto const at = [&](std::size_t k) { return p.patch.indices[3 * triangle + k]; };
+    auto const side = [&](std::size_t k) {
+        return std::pair(double(p.u[at(k)]) - double(p.u[at(0)]),
+                         double(p.v[at(k)]) - double(p.v[at(0)]));
+    };
+    auto const [a, b] = side(1);
+    auto const [c, d] = side(2);
+    return a * d - b * c;
+}
+
+TEST(UniformPattern, IsSquareManyTrianglesOfOneSizeThatMeetOnceAlongEachEdge)
+{
+    for (auto const& [domain, of_one, points_of] :
+         {std::tuple(TessellatorDomain::Tri, 1, 2), std::tuple(TessellatorDomain::Quad, 2, 1)})
+        for (int n = 1; n <= 64; n *= 2) {
+            SCOPED_TRACE(n);
+            auto const p = uniform_pattern(domain, n);
+            std::size_t const triangles = p->patch.indices.size() / 3;
+            EXPECT_EQ(triangles, std::size_t(of_one * n * n));
+            EXPECT_EQ(p->u.size(),
+                      std::size_t((n + 1) * (n + (points_of == 2 ? 2 : 1)) / points_of));
+            std::set<std::pair<float, float>> places;
+            for (std::size_t i = 0; i < p->u.size(); ++i) {
+                places.emplace(p->u[i], p->v[i]);
+                EXPECT_EQ(p->u[i] * float(n), std::floor(p->u[i] * float(n)));
+                EXPECT_EQ(p->v[i] * float(n), std::floor(p->v[i] * float(n)));
+                EXPECT_EQ(p->patch.u[i], std::uint32_t(p->u[i] * float(kFixedOne)));
+                EXPECT_EQ(p->patch.v[i], std::uint32_t(p->v[i] * float(kFixedOne)));
+            }
+            EXPECT_EQ(places.size(), p->u.size());
+            std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+            for (std::size_t t = 0; t < triangles; ++t) {
+                EXPECT_EQ(doubled_area(*p, t), 1.0 / (n * n)); // powers of two
+                for (std::size_t k = 0; k < 3; ++k)
+                    EXPECT_TRUE(edges
+                                    .emplace(p->patch.indices[3 * t + k],
+                                             p->patch.indices[3 * t + (k + 1) % 3])
+                                    .second);
+            }
+        }
+}
+
+// The first pass's hull shader and the second's vertex shader know nothing of the pattern.
+TEST(UniformPattern, HasTheDomainShadersPoints)
+{
+    auto const points = [](SchemeOnMesh const& m, FrameSettings const& s) {
+        std::map<std::tuple<std::string, std::uint32_t, float, float>, std::vector<float>> out;
+        visit_surface(*m.patches, s, ThreadPool(), [&](SurfacePatch const& p) {
+            for (std::size_t i = 0; i < p.points(); ++i)
+                out[{p.kind().name, p.number(), p.domain().u[i], p.domain().v[i]}] = p.scalars(i);
+        });
+        return out;
+    };
+    for_each_case([&](SchemeOnMesh const& m) {
+        FrameSettings s;
+        s.tess_factor = 16;
+        s.partitioning = Partitioning::Integer;
+        auto const eleven = points(m, s);
+        s.direct3d10 = true;
+        s.pattern = RefinementPattern::Uniform;
+        s.tess_factor = 8.5f; // is rounded up
+        auto const ten = points(m, s);
+        std::size_t inside = 0;
+        for (auto const& [at, point] : ten)
+            if (auto const same = eleven.find(at); same != eleven.end()) {
+                ASSERT_EQ(point, same->second);
+                auto const [u, v] = std::pair(std::get<2>(at), std::get<3>(at));
+                inside += u > 0 && v > 0 && u + v < 1;
+            }
+        EXPECT_GT(inside, 0u);
+        std::size_t triangles = 0, expected = 0;
+        CommandList const list = frame_commands(*m.patches, s, surface_settings(s));
+        list.for_each_surface_draw([&](Draw const& d) {
+            triangles += d.patches.size() * d.grid->patch.indices.size() / 3;
+        });
+        m.patches->commands(s).for_each_surface_draw([&](Draw const& d) {
+            bool const quads = d.pipeline.domain_shader->domain() == TessellatorDomain::Quad;
+            expected += d.patches.size() * (quads ? 2u : 1u) * 16 * 16;
+        });
+        EXPECT_EQ(triangles, expected);
+    });
 }
 
 } // namespace

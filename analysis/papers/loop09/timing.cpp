@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "analysis/papers/loop09/timing.h"
 
+#include "analysis/papers/timed_cell.h"
 #include "pipeline/commands/direct3d10.h"
 #include "pipeline/frame.h"
 #include "pipeline/schemes/scheme.h"
@@ -11,64 +12,13 @@ namespace tessemu {
 
 namespace {
 
-// A time that the paper gives, and what the same work counts here.
-struct TimedCell {
-    std::string model;
-    char const* scheme;
-    int n; // the grid is N x N: tess factor N - 1
-    double seconds;
-    double scale = 1; // of the counts, to the paper's number of patches
-    DrawStatistics statistics;
-};
-
-double predicted(GpuModel const& m, TimedCell const& c)
-{
-    return m.overhead + c.scale * (estimate_cost(m, c.statistics).seconds - m.overhead);
-}
-
-// Least squares of (overhead + fetches / rate + rest - seconds) / seconds over the cells but one.
-//
-// A stage's memory traffic is in `rest`, on top of its fetches, where predicted() takes the longer
-// of the two: only so is the sum linear in overhead and 1 / rate. Of table 1 no stage waits for
-// memory and both agree. Of table 2 some do: there this is near predicted()'s least squares, and not
-// at them.
-GpuModel fitted(GpuModel m, std::vector<TimedCell> const& cells, std::size_t left_out)
-{
-    GpuModel rest = m;
-    rest.any_fetch = GpuModel::kUnknown;
-    rest.overhead = 0;
-    double s1 = 0, sx = 0, sxx = 0, sy = 0, sxy = 0;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        if (i == left_out) continue;
-        TimedCell const& c = cells[i];
-        DrawCost const without = estimate_cost(rest, c.statistics);
-        double x = 0;
-        for (StageCost const& s : without.stages)
-            if (s.stage.ends_with("_shader")) x += c.scale * s.fetches;
-        double const w = 1 / (c.seconds * c.seconds);
-        double const y = c.seconds - c.scale * without.shaders;
-        s1 += w, sx += w * x, sxx += w * x * x, sy += w * y, sxy += w * x * y;
-    }
-    double const d = s1 * sxx - sx * sx;
-    double const per_fetch = (s1 * sxy - sx * sy) / d;
-    m.overhead = (sy * sxx - sx * sxy) / d;
-    if (!(per_fetch > 0 && m.overhead >= 0))
-        throw Error(fmt::format("the fit gives {} seconds a fetch and an overhead of {}: the GPU "
-                                "does not fit the table",
-                                per_fetch, m.overhead));
-    m.any_fetch = 1 / per_fetch;
-    return m;
-}
-
-constexpr std::size_t kNone = std::size_t(-1);
-
 DrawStatistics count(TimedCell const& cell, ControlMesh const& mesh, GpuModel const& gpu,
                      Machine const& machine, bool direct3d10, bool irregular_only,
                      ThreadPool const& threads, std::size_t* patches)
 {
     SchemeOnMesh const on = build_scheme(find_scheme(cell.scheme), mesh);
     FrameSettings s;
-    s.tess_factor = float(cell.n - 1);
+    s.tess_factor = float(cell.segments);
     s.partitioning = Partitioning::Integer;
     s.machine = machine;
     s.vertex_cache = gpu.vertex_cache;
@@ -84,14 +34,6 @@ DrawStatistics count(TimedCell const& cell, ControlMesh const& mesh, GpuModel co
     return run_commands(list, threads, options).total;
 }
 
-std::string gpu_remark(GpuModel const& m)
-{
-    return fmt::format(
-        "Fitted to the table: {:.3g} ms a frame whatever is drawn, {:.3g} fetches of "
-        "up to 16 bytes a second. GPU: {}.",
-        1e3 * m.overhead, m.any_fetch, m.name);
-}
-
 } // namespace
 
 TimingTable reproduce_loop09_table1(ControlMesh const& mesh, GpuModel gpu, Machine const& machine,
@@ -103,7 +45,7 @@ TimingTable reproduce_loop09_table1(ControlMesh const& mesh, GpuModel gpu, Machi
          {std::tuple("acc", 10, .104), std::tuple("gregory-stencil", 10, .0913),
           std::tuple("pm", 10, .1327), std::tuple("gregory-two-stage", 10, .1047),
           std::tuple("gregory-stencil", 6, .053), std::tuple("gregory-two-stage", 6, .0485)})
-        cells.push_back({"", scheme, n, ms * 1e-3, 1, {}});
+        cells.push_back({"", scheme, n - 1, ms * 1e-3});
     for (std::size_t i = 0; i < cells.size(); ++i) {
         std::size_t patches = 0;
         cells[i].statistics = count(cells[i], mesh, gpu, machine, false, true, threads, &patches);
@@ -111,23 +53,24 @@ TimingTable reproduce_loop09_table1(ControlMesh const& mesh, GpuModel gpu, Machi
         if (progress) progress(i + 1, cells.size());
     }
     TimingTable out;
-    out.gpu = fitted(gpu, cells, kNone);
+    out.gpu = fitted_to(cells, gpu);
     out.table.title = "LOOP09 table 1: 508 irregular quads on a Direct3D 11 emulator";
     for (std::size_t i = 0; i < cells.size(); ++i) {
-        std::string const row = fmt::format("N = {}, {}", cells[i].n, cells[i].scheme);
+        std::string const row = fmt::format("N = {}, {}", cells[i].segments + 1, cells[i].scheme);
         double const ms = 1e3 * cells[i].seconds;
-        out.table.cells.push_back({row, "ms", ms, 1e3 * predicted(out.gpu, cells[i])});
+        out.table.cells.push_back({row, "ms", ms, 1e3 * predicted_seconds(out.gpu, cells[i])});
         out.table.cells.push_back({row, "ms, cell left out of the fit", ms,
-                                   1e3 * predicted(fitted(gpu, cells, i), cells[i])});
+                                   1e3 * predicted_seconds(fitted_to(cells, gpu, i), cells[i])});
     }
     auto const ratio = [&](char const* row, std::size_t a, std::size_t b) {
-        out.table.cells.push_back({row, "ratio of times", cells[a].seconds / cells[b].seconds,
-                                   predicted(out.gpu, cells[a]) / predicted(out.gpu, cells[b])});
+        out.table.cells.push_back(
+            {row, "ratio of times", cells[a].seconds / cells[b].seconds,
+             predicted_seconds(out.gpu, cells[a]) / predicted_seconds(out.gpu, cells[b])});
     };
     ratio("N = 10, stencil: ACC / Gregory", 0, 1);
     ratio("N = 10, two-stage: Pm / Gregory", 2, 3);
     out.table.remarks = {
-        gpu_remark(out.gpu),
+        in_words_of_fit(out.gpu),
         fmt::format(
             "The paper's mesh (figure 1) is not to be had: the irregular quads of {} stand "
             "for its 508. N x N points are tess factor N - 1. The two times of N = 6 are by "
@@ -161,7 +104,7 @@ TimingTable reproduce_loop09_table2(std::vector<ControlMesh> const& meshes, GpuM
     std::vector<TimedCell> cells;
     for (Printed const& p : kPrinted)
         for (auto const& [n, fps] : {std::pair(17, p.fps17), std::pair(25, p.fps25)})
-            cells.push_back({p.model, p.scheme, n, 1 / fps, 1, {}});
+            cells.push_back({p.model, p.scheme, n - 1, 1 / fps});
     for (std::size_t i = 0; i < cells.size(); ++i) {
         std::size_t const which = cells[i].model == kLoop09Table2Models[0] ? 0 : 1;
         cells[i].statistics =
@@ -169,23 +112,24 @@ TimingTable reproduce_loop09_table2(std::vector<ControlMesh> const& meshes, GpuM
         if (progress) progress(i + 1, cells.size());
     }
     TimingTable out;
-    out.gpu = fitted(gpu, cells, kNone);
+    out.gpu = fitted_to(cells, gpu);
     out.table.title = "LOOP09 table 2: instanced tessellation on a GeForce GTX 260";
     for (std::size_t i = 0; i < cells.size(); ++i) {
         TimedCell const& c = cells[i];
-        std::string const row = fmt::format("{}, N = {}, {}", c.model, c.n, c.scheme);
+        std::string const row = fmt::format("{}, N = {}, {}", c.model, c.segments + 1, c.scheme);
         out.table.cells.push_back(
-            {row, "frames a second", 1 / c.seconds, 1 / predicted(out.gpu, c)});
+            {row, "frames a second", 1 / c.seconds, 1 / predicted_seconds(out.gpu, c)});
         out.table.cells.push_back({row, "frames a second, cell left out of the fit", 1 / c.seconds,
-                                   1 / predicted(fitted(gpu, cells, i), c)});
+                                   1 / predicted_seconds(fitted_to(cells, gpu, i), c)});
         // Gregory's cell of the same mesh and N.
         TimedCell const& ours = cells[i / 6 * 6 + 4 + i % 2];
         if (&ours != &c)
-            out.table.cells.push_back({row, "time / Gregory's", c.seconds / ours.seconds,
-                                       predicted(out.gpu, c) / predicted(out.gpu, ours)});
+            out.table.cells.push_back(
+                {row, "time / Gregory's", c.seconds / ours.seconds,
+                 predicted_seconds(out.gpu, c) / predicted_seconds(out.gpu, ours)});
     }
     out.table.remarks = {
-        gpu_remark(out.gpu),
+        in_words_of_fit(out.gpu),
         "Counted: both passes of the Direct3D 10 path without rasterization, whose share the paper "
         "does not tell. Every vertex of the pattern runs once, as the paper counts N x N.",
         "The paper's bigguy has 1754 patches, which is the number of its texture vertices; the "

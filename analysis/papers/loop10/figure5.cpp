@@ -40,17 +40,6 @@ DrawCost cost_of_draws(GpuModel const& gpu, std::vector<CommandStatistics> comma
     return estimate_cost(gpu, commands);
 }
 
-std::string in_words(DrawCost const& cost)
-{
-    for (StageCost const& s : cost.stages)
-        if (s.stage == cost.bound) {
-            std::string stage = s.stage;
-            std::replace(stage.begin(), stage.end(), '_', ' ');
-            return s.bound() == "rate" ? stage : stage + ", " + s.bound();
-        }
-    return cost.bound;
-}
-
 double step_seconds(SubdivisionTime const& time, SubdivisionFit const& fit)
 {
     return time.dispatches ? fit.frame + fit.dispatch * double(time.dispatches) + time.seconds : 0;

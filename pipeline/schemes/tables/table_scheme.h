@@ -20,11 +20,15 @@ public:
         info_.section = "2";
         info_.takes.creases = info_.takes.corners = !WideMasks<Masks>;
         info_.takes.edges = LocalMesh::kMostEdges;
-        info_.parameters = TableForm::parameters(!WideMasks<Masks>);
+        info_.parameters = TableForm::parameters(!WideMasks<Masks>, info_.takes.steps);
         info_.watertight_with = {{"tables", "enforced"}};
         info_.no_curvature = "its tables have no second derivatives";
     }
     SchemeInfo info() const override { return info_; }
+    int more_steps(Parameters const& parameters) const override
+    {
+        return TableForm::more_steps(parameters, info_.takes.steps);
+    }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
                                      Parameters const& parameters,
                                      BuildServices const& services) const override
