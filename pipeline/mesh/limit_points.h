@@ -31,6 +31,8 @@ struct LimitRules {
                                        std::span<glm::dvec3 const>);
     /// Of a mesh that a step has made: of quads, or of triangles where the step keeps them.
     LimitPoints (*limits)(Topology const&, std::span<glm::dvec3 const>);
+    bool
+        knows_tags; ///< creases and corners; otherwise they are drawn smooth from the first step on
 };
 
 /// Of a side of a vertex. Where the tangents are parallel, as two sharp edges in one line are, the
@@ -153,6 +155,7 @@ requires WideMasks<Masks> LimitPoints limit_points(Topology const& t, std::span<
 }
 
 template <class Masks>
-inline constexpr LimitRules limit_rules{refined_points<Masks, glm::dvec3>, limit_points<Masks>};
+inline constexpr LimitRules limit_rules{refined_points<Masks, glm::dvec3>, limit_points<Masks>,
+                                        !WideMasks<Masks>};
 
 } // namespace tessemu

@@ -2,6 +2,7 @@
 #include "pipeline/schemes/scheme.h"
 
 #include "pipeline/mesh/join.h"
+#include "pipeline/mesh/limit_points.h"
 #include "pipeline/mesh/manifold.h"
 #include "pipeline/mesh/sort_by_valence.h"
 #include "pipeline/mesh/triangulate.h"
@@ -266,10 +267,12 @@ void warn_of_tags(SchemeInfo const& info, RefinedMesh const& refined, std::vecto
 {
     Topology const& topology = refined.base_topology();
     ControlMesh const& mesh = refined.base();
+    LimitRules const* const rules = info.takes.step.limit;
+    int const sharp_steps = rules && !rules->knows_tags ? 0 : refined.steps();
     std::string const after =
-        refined.steps() ? " after " + in_words_of_steps(refined.steps()) : std::string();
+        sharp_steps ? " after " + in_words_of_steps(sharp_steps) : std::string();
     auto const is_left = [&](float sharpness) {
-        return sharpness >= kInfinitelySharp || sharpness > float(refined.steps());
+        return sharpness >= kInfinitelySharp || sharpness > float(sharp_steps);
     };
     // A crease on the boundary is sharp by nature.
     auto const is_inside = [](Topology const& t, ControlMesh::Crease const& c) {

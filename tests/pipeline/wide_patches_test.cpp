@@ -70,9 +70,10 @@ TEST(WidePatches, SharedPointsHaveEqualBitsUnderEveryContraction)
                 }
             ++drawn;
         }
-    // Both Gregory forms, Stam, biseptic and bolz, ACC where all faces are quads, where nothing is
-    // wide Pm, and of triangles alone Loop's tables, QAS, PN triangles, Phong and flat ones.
-    EXPECT_EQ(drawn, 5 * 7 + 5 + 1 + 5);
+    // Both Gregory forms, Stam, biseptic, bolz and Catmull-Clark's tables, ACC where all faces are
+    // quads, where nothing is wide Pm, and of triangles alone Loop's and Butterfly's tables, QAS, PN
+    // triangles, Phong and flat ones.
+    EXPECT_EQ(drawn, 6 * 7 + 5 + 1 + 6);
 }
 
 TEST(WidePatches, AWarningCountsThem)
