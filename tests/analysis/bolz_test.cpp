@@ -10,7 +10,7 @@
 #include "shaders_cpp/bolz/table_pixel_shaders.h"
 #include "tests/support/edges.h"
 #include "tests/support/files.h"
-#include "tests/support/gzip.h"
+#include "tests/support/limit_samples.h"
 #include "tests/support/random_mesh.h"
 #include "tests/support/sanitized.h"
 #include "tests/support/shapes.h"
@@ -20,7 +20,6 @@
 #include <glm/geometric.hpp>
 
 #include <map>
-#include <sstream>
 
 namespace tessemu {
 namespace {
@@ -50,10 +49,7 @@ TEST_P(TaggedSamples, AreVerticesOfTheDraw)
                       golden = "golden/limit/" + name + ".csv.gz";
     TESSEMU_NEEDS_SHARED(model);
     TESSEMU_NEEDS_SHARED(golden);
-    ControlMesh mesh = load_model(test::shared(model).string()).mesh;
-    if (test::read_text(test::shared(model)).find("t interpolateboundary") == std::string::npos)
-        mesh.rules.boundary = BoundaryRule::EdgeOnly; // as the samples have it
-    SchemeOnMesh const on = bolz(mesh);
+    SchemeOnMesh const on = bolz(test::mesh_of_samples(test::shared(model)));
     ControlMesh const& base = on.mesh->base();
     std::map<MeshPoint, glm::vec3> vertices;
     visit_surface(*on.patches, segments(16), ThreadPool(0), [&](SurfacePatch const& p) {
@@ -61,28 +57,18 @@ TEST_P(TaggedSamples, AreVerticesOfTheDraw)
         for (std::size_t i = 0; i < p.points(); ++i)
             vertices[mesh_point(base, p.place(), at.u[i], at.v[i])] = p.vertex(i).smooth;
     });
-    std::istringstream in(test::read_gzip(test::shared(golden)));
-    std::string line;
-    std::getline(in, line);
-    double const diagonal = std::stod(line.substr(line.find("bbox_diag=") + 10));
-    std::getline(in, line);
+    test::LimitSamples const limit = test::read_limit_samples(test::shared(golden));
     std::size_t compared = 0;
     double worst = 0;
-    while (std::getline(in, line)) {
-        double c[7];
-        std::istringstream row(line);
-        for (double& x : c) {
-            row >> x;
-            row.ignore();
-        }
+    for (auto const& sample : limit.samples) {
         PatchPlace place;
-        place.face = std::uint32_t(c[0]);
-        if (base.face(place.face).size() != 4) place.corner = std::uint16_t(c[1]);
+        place.face = sample.face;
+        if (base.face(place.face).size() != 4) place.corner = std::uint16_t(sample.sub);
         auto const fixed = [](double x) { return std::uint32_t(x * 65536); };
-        auto const found = vertices.find(mesh_point(base, place, fixed(c[2]), fixed(c[3])));
-        ASSERT_NE(found, vertices.end()) << line;
-        double const off = glm::length(glm::dvec3(found->second) - glm::dvec3(c[4], c[5], c[6]));
-        worst = std::max(worst, off / diagonal);
+        auto const found = vertices.find(mesh_point(base, place, fixed(sample.u), fixed(sample.v)));
+        ASSERT_NE(found, vertices.end()) << sample.line;
+        double const off = glm::length(glm::dvec3(found->second) - sample.position);
+        worst = std::max(worst, off / limit.diagonal);
         ++compared;
     }
     EXPECT_GT(compared, 20u);

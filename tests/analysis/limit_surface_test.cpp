@@ -5,7 +5,7 @@
 #include "analysis/limit_surface.h"
 #include "io/model.h"
 #include "tests/support/files.h"
-#include "tests/support/gzip.h"
+#include "tests/support/limit_samples.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 namespace tessemu {
 namespace {
@@ -57,34 +56,24 @@ TEST_P(GoldenLimit, PositionsAndNormalsAgreeWhereTheGridsMeet)
     ControlMesh const mesh = load_model(test::shared(model).string()).mesh;
     Topology const topology(mesh);
     LimitSurface const limit(topology, 2);
-    std::istringstream in(test::read_gzip(test::shared(golden)));
-    std::string line;
-    std::getline(in, line);
-    double const diagonal = std::stod(line.substr(line.find("bbox_diag=") + 10));
-    std::getline(in, line);
+    test::LimitSamples const wanted = test::read_limit_samples(test::shared(golden));
     double largest = 0;
     for (glm::vec3 const& p : mesh.positions)
         for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(double(p[k])));
     double const moved = std::sqrt(3.0) * 0x1p-24 * largest;
     std::size_t compared = 0;
     double worst = 0, worst_normal = 0;
-    while (std::getline(in, line)) {
-        std::istringstream row(line);
-        double c[10];
-        for (double& x : c) {
-            row >> x;
-            row.ignore();
-        }
-        auto const face = std::uint32_t(c[0]);
+    for (auto const& sample : wanted.samples) {
+        std::uint32_t const face = sample.face;
         if (!limit.has_grid(face)) continue;
-        double const x = c[2] * limit.grid(), y = c[3] * limit.grid();
+        double const x = sample.u * limit.grid(), y = sample.v * limit.grid();
         if (std::abs(x - std::round(x)) > 1e-6 || std::abs(y - std::round(y)) > 1e-6) continue;
         int const i = int(std::round(x)), j = int(std::round(y));
         std::uint32_t const v = limit.vertex(face, i, j);
-        double const apart = glm::length(limit.positions()[v] - glm::dvec3(c[4], c[5], c[6]));
-        EXPECT_LE(apart, 1e-9 * diagonal + moved) << line;
-        worst = std::max(worst, apart / diagonal);
-        glm::dvec3 const n(c[7], c[8], c[9]);
+        double const apart = glm::length(limit.positions()[v] - sample.position);
+        EXPECT_LE(apart, 1e-9 * wanted.diagonal + moved) << sample.line;
+        worst = std::max(worst, apart / wanted.diagonal);
+        glm::dvec3 const& n = sample.normal;
         if (n != glm::dvec3(0)) {
             auto const [du, dv] = segments(limit, face, i, j);
             double const u = glm::length(du), w = glm::length(dv),
@@ -94,7 +83,7 @@ TEST_P(GoldenLimit, PositionsAndNormalsAgreeWhereTheGridsMeet)
                              std::sqrt(3.0) * 0.5e-8 +
                              (is_extraordinary(topology, face, i, j, limit.grid()) ? 5e-6 : 0);
             double const angle = glm::length(limit.normals()[v] - n);
-            EXPECT_LE(angle, samples + turned) << line;
+            EXPECT_LE(angle, samples + turned) << sample.line;
             worst_normal = std::max(worst_normal, angle);
         }
         ++compared;

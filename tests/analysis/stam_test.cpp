@@ -10,8 +10,8 @@
 #include "pipeline/schemes/scheme.h"
 #include "shaders_cpp/records.h"
 #include "tests/support/files.h"
-#include "tests/support/gzip.h"
 #include "tests/support/isolated_nets.h"
+#include "tests/support/limit_samples.h"
 #include "tests/support/shapes.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,6 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <sstream>
 #include <tuple>
 
 namespace tessemu {
@@ -115,38 +114,24 @@ TEST_P(LimitSamples, AreOnTheSurface)
     TESSEMU_NEEDS_SHARED(model);
     TESSEMU_NEEDS_SHARED(golden);
     ControlMesh const mesh = load_model(test::shared(model).string()).mesh;
-    std::string const text = test::read_gzip(test::shared(golden));
+    test::LimitSamples const limit = test::read_limit_samples(test::shared(golden));
     for (ParameterTexts const& choices : all_choices()) {
         SchemeOnMesh const on = stam(mesh, choices);
         AnyPoint const surface(*on.patches);
-        std::istringstream in(text);
-        std::string line;
-        std::getline(in, line);
-        double const diagonal = std::stod(line.substr(line.find("bbox_diag=") + 10));
-        std::getline(in, line);
-        std::size_t samples = 0;
         double worst = 0;
-        while (std::getline(in, line)) {
-            std::istringstream row(line);
-            double c[10];
-            for (double& x : c) {
-                row >> x;
-                row.ignore();
-            }
-            auto const face = std::uint32_t(c[0]);
-            bool const quad = mesh.face(face).size() == 4;
+        for (auto const& s : limit.samples) {
+            bool const quad = mesh.face(s.face).size() == 4;
             SurfacePoint<float> const got =
-                surface.at(face, quad ? PatchPlace::kWhole : std::uint16_t(c[1]), c[2], c[3]);
+                surface.at(s.face, quad ? PatchPlace::kWhole : std::uint16_t(s.sub), s.u, s.v);
             double const apart =
                 glm::length(glm::dvec3(double(got.position.x), double(got.position.y),
                                        double(got.position.z)) -
-                            glm::dvec3(c[4], c[5], c[6])) /
-                diagonal;
-            ASSERT_LE(apart, 2e-6) << line;
+                            s.position) /
+                limit.diagonal;
+            ASSERT_LE(apart, 2e-6) << s.line;
             worst = std::max(worst, apart);
-            ++samples;
         }
-        ASSERT_GE(samples, 9 * mesh.faces());
+        ASSERT_GE(limit.samples.size(), 9 * mesh.faces());
         RecordProperty("worst_" + choices[0].second + "_" + choices[1].second,
                        std::to_string(worst * 1e9) + "e-9 of the diagonal");
     }

@@ -5,14 +5,13 @@
 #include "pipeline/frame.h"
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/files.h"
-#include "tests/support/gzip.h"
+#include "tests/support/limit_samples.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
-#include <sstream>
 
 namespace tessemu {
 namespace {
@@ -24,31 +23,22 @@ struct LimitCorners {
 
 LimitCorners read_limit(std::filesystem::path const& path, ControlMesh const& mesh)
 {
-    LimitCorners out;
-    std::istringstream in(test::read_gzip(path));
-    std::string line;
-    std::getline(in, line);
-    out.diagonal = std::stod(line.substr(line.find("bbox_diag=") + 10));
-    std::getline(in, line);
-    while (std::getline(in, line)) {
-        std::istringstream row(line);
-        double c[7];
-        for (double& x : c) {
-            row >> x;
-            row.ignore();
-        }
-        auto const face = std::uint32_t(c[0]);
-        auto const is = [](double x, double y) { return std::abs(x - y) < 1e-9; };
+    test::LimitSamples const limit = test::read_limit_samples(path);
+    LimitCorners out{limit.diagonal, {}};
+    for (auto const& s : limit.samples) {
+        auto const is = [&](double u, double v) {
+            return std::abs(s.u - u) < 1e-9 && std::abs(s.v - v) < 1e-9;
+        };
         int corner = -1;
-        if (mesh.face(face).size() == 4) {
-            if (is(c[2], 0) && is(c[3], 0)) corner = 0;
-            if (is(c[2], 1) && is(c[3], 0)) corner = 1;
-            if (is(c[2], 1) && is(c[3], 1)) corner = 2;
-            if (is(c[2], 0) && is(c[3], 1)) corner = 3;
-        } else if (is(c[2], 0) && is(c[3], 0)) {
-            corner = int(c[1]); // sub-face i starts at vertex i
+        if (mesh.face(s.face).size() == 4) {
+            if (is(0, 0)) corner = 0;
+            if (is(1, 0)) corner = 1;
+            if (is(1, 1)) corner = 2;
+            if (is(0, 1)) corner = 3;
+        } else if (is(0, 0)) {
+            corner = s.sub; // sub-face i starts at vertex i
         }
-        if (corner >= 0) out.at[{face, corner}] = {c[4], c[5], c[6]};
+        if (corner >= 0) out.at[{s.face, corner}] = {s.position.x, s.position.y, s.position.z};
     }
     return out;
 }
