@@ -93,7 +93,7 @@ private:
     /// \returns  TableBuffers::vertices
     std::span<float const> add_table_vertices(CommandList& list, VertexSource const& positions,
                                               SurfaceSettings const& settings) const;
-    /// VertexRings::entries.
+    /// VertexFans::entries.
     static std::vector<std::uint32_t> entries(std::span<TableVertex const> vertices);
 
     Mesher mesher_;

@@ -11,7 +11,7 @@
 namespace tessemu {
 
 /// Vertices of a mesh with the faces around them.
-struct VertexRings {
+struct VertexFans {
     /// [vertex][3]: of the mesh; where its ring begins; the ring's vertices, twice, and one more
     /// where the fan is open
     Buffer<std::uint32_t> entries;
@@ -85,7 +85,7 @@ struct TableVertices {
 struct TableVerticesShader {
     static constexpr std::array<int, 3> kThreads{64, 1, 1};
 
-    VertexRings mesh;
+    VertexFans mesh;
     TableVertices vertices; ///< out
 
     std::vector<ResourceInfo> resources() const
@@ -109,7 +109,7 @@ struct TableVerticesShader {
 struct MeshNormalsShader {
     static constexpr std::array<int, 3> kThreads{64, 1, 1};
 
-    VertexRings mesh;
+    VertexFans mesh;
     RWVectorBuffer normals; ///< out, by vertex of the mesh
 
     std::vector<ResourceInfo> resources() const
@@ -131,7 +131,7 @@ struct MeshNormalsShader {
 struct CarriedVerticesShader {
     static constexpr std::array<int, 3> kThreads{64, 1, 1};
 
-    Buffer<std::uint32_t> entries; ///< VertexRings::entries
+    Buffer<std::uint32_t> entries; ///< VertexFans::entries
     Buffer<float> positions;       ///< [vertex of the mesh][stride]
     Buffer<float> normals;         ///< the same
     TableVertices vertices;        ///< out
