@@ -346,6 +346,7 @@ TEST(TableForm, ShadingFromTheFilesMeshCarriesNormalsAsPositions)
 // that is: an icosahedron's first normals are right.
 TEST(TableForm, ShadingNearsTheSurfaceWithEachStepAndMovesNoPoint)
 {
+    if (test::kSlow) GTEST_SKIP() << "many points; the test before goes over the same code";
     ThreadPool const threads;
     for (std::string const scheme : {"loop", "catmull-clark"}) {
         ControlMesh const mesh = load_model(scheme == "loop" ? "spindle" : "golem").mesh;
