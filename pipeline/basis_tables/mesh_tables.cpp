@@ -18,10 +18,9 @@ std::vector<std::uint16_t> used_columns(LocalTables const& t)
     auto const samples = std::ptrdiff_t(t.grid.samples());
     for (int k = 0; k < t.points; ++k) {
         auto const weighs = [&](std::vector<double> const& table) {
-            auto const column =
-                std::span(table).subspan(table.empty() ? 0 : std::size_t(k * samples),
-                                         table.empty() ? 0 : std::size_t(samples));
-            return std::any_of(column.begin(), column.end(), [](double w) { return w != 0; });
+            return !table.empty() &&
+                   std::any_of(table.begin() + k * samples, table.begin() + (k + 1) * samples,
+                               [](double w) { return w != 0; });
         };
         if (weighs(t.position) || weighs(t.tangents[0]) || weighs(t.tangents[1]))
             out.push_back(std::uint16_t(k));
@@ -190,7 +189,7 @@ void MeshTables::enforce(Topology const& topology)
                std::size_t(side) * std::size_t(of.grid.segments + 1) + std::size_t(t);
     };
     SignedSets sets(size);
-    int const tables = types_[0].tangents[0].empty() ? 1 : 3; // position, tangents
+    int const tables = types_.empty() || types_[0].tangents[0].empty() ? 1 : 3; // with tangents
     // A corner is at the end of one side and the beginning of the next.
     for (std::uint32_t type = 0; type < types_.size(); ++type) {
         TypeOfTables const& of = types_[type];

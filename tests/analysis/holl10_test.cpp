@@ -21,7 +21,7 @@ namespace tessemu {
 namespace {
 
 // The specification is of the card, whose two GPUs share nothing: 1788.48 GFLOPS, a multiply-add
-// and a multiplication a clock; 223.8 GB/s; 92.2 billion texels of 4 bytes a second.
+// and a multiplication a clock; 223.8 GB/s; 92.2 billion texels of 4 bytes a second. Near: half of the first one's last digit.
 TEST(Gpu, OneOfTheGtx295IsHalfOfItsMakersNumbers)
 {
     GpuModel const m = load_gpu_model("gtx295");
