@@ -85,6 +85,7 @@ Config config_of(ModelRequest const& o, Parameters const& parameters)
     };
     for (SchemeParameter const& p : info.parameters) add(p);
     add(sort_parameter());
+    add(coordinates_parameter());
     return out;
 }
 
@@ -145,7 +146,7 @@ std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o, J
     } else {
         HeightImage image = read_height_image(path);
         try {
-            out = std::make_shared<Displacement>(mesh.base_topology(), std::move(image), scale,
+            out = std::make_shared<Displacement>(job.surface.mesh, std::move(image), scale,
                                                  o.displace.wrap.value_or(HeightWrap::Repeat));
         } catch (Error const& e) {
             throw Error(job.path + ": " + e.what());
@@ -289,7 +290,8 @@ void set_picture(Job& job, PictureRequest const& o, SurfaceRequest const& surfac
 {
     SchemeInfo const info = surface.model.scheme->info();
     if (!info.tessellator && o.tess_edge.kind != AdaptiveFactors::Kind::None)
-        throw Error("--tess-edge: " + info.name + " has no tessellator that takes factors by edge; "
+        throw Error("--tess-edge: " + info.name +
+                    " has no tessellator that takes factors by edge; "
                     "'tessemu schemes' lists what it can be set to");
     FrameSettings& f = job.frame;
     f.width = o.size.width;

@@ -46,7 +46,8 @@ int list_schemes()
     }
     out += "every scheme of quads, where steps of subdivision are taken: its own, or by "
            "--subdivide\n" +
-           line_of(sort_parameter());
+           line_of(sort_parameter()) + "every scheme, where steps are taken\n" +
+           line_of(coordinates_parameter());
     print(out);
     return 0;
 }

@@ -246,11 +246,12 @@ void add_options(Verb& verb, ModelRequest& o)
                      "mesh that steps of subdivision run on; again for another one");
     verb.option("--scheme", o.scheme, parse_scheme, "patch scheme, see 'tessemu schemes'",
                 "gregory-stencil");
-    verb.option("--subdivide", o.build.subdivide, whole(0, 6),
-                "steps of subdivision of the mesh before the scheme (Catmull-Clark; before a scheme "
-                "of triangles Loop), beyond those that it asks for, 0 to 6; they run as compute "
-                "shaders (LOOP10 3) and are counted",
-                "0");
+    verb.option(
+        "--subdivide", o.build.subdivide, whole(0, 6),
+        "steps of subdivision of the mesh before the scheme (Catmull-Clark; before a scheme "
+        "of triangles Loop), beyond those that it asks for, 0 to 6; they run as compute "
+        "shaders (LOOP10 3) and are counted",
+        "0");
 }
 
 void add_mesh_options(Verb& verb, ModelRequest& o, std::string const& parameters)

@@ -28,8 +28,8 @@ Config config_of(SubdivideRequest const& o, Parameters const& parameters)
 {
     Config out{{"levels", std::int64_t(o.mesh.build.subdivide)}};
     if (o.mesh.build.join) out.emplace_back("join", *o.mesh.build.join);
-    std::string const sort = sort_parameter().name;
-    if (parameters.values().count(sort)) out.emplace_back(sort, parameters.word(sort));
+    for (std::string const& name : {sort_parameter().name, coordinates_parameter().name})
+        if (parameters.values().count(name)) out.emplace_back(name, parameters.word(name));
     out.emplace_back("contraction", name_of(o.shading.products));
     return out;
 }
@@ -101,7 +101,9 @@ void add_subdivide(CommandLine& program)
                 "the refined mesh, .obj with tags or .ply; '-': OBJ on standard output");
     add_mesh_options(verb, o->mesh,
                      "sort=none or sort=valence: the order of the mesh's vertices and faces for "
-                     "the tables; valence: those of one valence side by side [none]");
+                     "the tables; valence: those of one valence side by side [none]; "
+                     "coordinates=linear or coordinates=smooth: texture coordinates linear in "
+                     "faces, or by the masks of positions, seams being boundaries [linear]");
     add_machine(verb, o->shading);
     add_options(verb, o->run);
     verb.runs([o, &verb] {

@@ -321,9 +321,9 @@ private:
                  glm::dvec3 const& point, glm::dvec3 const& tangent) const
     {
         auto const leaving = [&](double way) {
-            return way * s_.displacement.slope(s_.mesh, place,
-                                               {domain_point, way * glm::dvec2(line.du, line.dv),
-                                                point, way * tangent});
+            return way *
+                   s_.displacement.slope(place, {domain_point, way * glm::dvec2(line.du, line.dv),
+                                                 point, way * tangent});
         };
         if (line.low == 0) return leaving(1);
         if (line.high == 0) return leaving(-1);

@@ -48,11 +48,6 @@ Named named(int valence)
     }
 }
 
-auto by_place(PatchPlace const& p)
-{
-    return std::tuple(p.face, p.corner, p.level, p.i, p.j);
-}
-
 } // namespace
 
 std::string_view PatchValence::color_name() const
@@ -88,22 +83,15 @@ PatchValence patch_valence(Topology const& topology, std::uint32_t face)
     return out;
 }
 
-PatchValences::PatchValences(RefinedMesh const& mesh)
+PatchValences::PatchValences(RefinedMesh const& mesh) : faces_(mesh)
 {
-    auto const faces = std::uint32_t(mesh.mesh().faces());
-    for (std::uint32_t f = 0; f < faces; ++f)
-        faces_.push_back({mesh.place(f), patch_valence(mesh.topology(), f).valence});
-    std::sort(faces_.begin(), faces_.end(),
-              [](Entry const& a, Entry const& b) { return by_place(a.place) < by_place(b.place); });
+    for (std::uint32_t f = 0; f < mesh.mesh().faces(); ++f)
+        valences_.push_back(patch_valence(mesh.topology(), f).valence);
 }
 
 PatchValence PatchValences::operator()(PatchPlace const& place) const
 {
-    auto const found = std::lower_bound(
-        faces_.begin(), faces_.end(), place,
-        [](Entry const& e, PatchPlace const& p) { return by_place(e.place) < by_place(p); });
-    assert(found != faces_.end() && by_place(found->place) == by_place(place));
-    return {found->valence};
+    return {valences_[faces_(place).face]};
 }
 
 std::vector<std::pair<PatchValence, std::size_t>> count_valences(PatchMesh const& mesh)

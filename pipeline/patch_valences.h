@@ -36,11 +36,8 @@ public:
     PatchValence operator()(PatchPlace const& place) const;
 
 private:
-    struct Entry {
-        PatchPlace place;
-        int valence;
-    };
-    std::vector<Entry> faces_; // ascending by place
+    FacesByPlace faces_;
+    std::vector<int> valences_; // by face
 };
 
 /// How many patches of a draw's or a frame's list each has: regular ones first, then by valence,

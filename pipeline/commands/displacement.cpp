@@ -121,36 +121,6 @@ int texel_number(double x, int size, HeightWrap wrap)
     return int(std::clamp(x, 0.0, size - 1.0));
 }
 
-std::vector<std::uint32_t> patch_words(ControlMesh const& mesh, Displacement const& displacement,
-                                       std::span<PatchPlace const> patches)
-{
-    std::vector<std::uint32_t> words;
-    words.reserve(2 * patches.size());
-    for (PatchPlace const& p : patches) {
-        auto const face = mesh.face(p.face);
-        auto const n = std::uint32_t(face.size());
-        std::uint32_t word = p.rotation;
-        if (p.corner != PatchPlace::kWhole) {
-            std::uint32_t const k = p.corner;
-            bool const first = face[k] > face[(k + 1) % n], last = face[(k + n - 1) % n] > face[k];
-            // Spokes run from the edge's middle to the centre: edge 1 so, edge 2 against it.
-            word |= C::kHalves | (first ? 1u : 0u) << C::kReversed | 4u << C::kReversed |
-                    (last ? 8u : 0u) << C::kReversed;
-        } else {
-            // Of a patch that is a part of its face the shader asks in the face's own frame.
-            unsigned const turns = p.level ? 0 : p.rotation;
-            for (unsigned k = 0; k < p.sides; ++k)
-                if (face[(k + turns) % n] > face[(k + 1 + turns) % n])
-                    word |= 1u << (unsigned(C::kReversed) + k);
-        }
-        if (p.is_flipped) word |= C::kFlipped;
-        word |= std::uint32_t(p.level) << C::kLevel;
-        word |= (std::uint32_t(p.i) + (std::uint32_t(p.j) << p.level)) << C::kCell;
-        words.insert(words.end(), {displacement.first_corner(mesh, p), word});
-    }
-    return words;
-}
-
 } // namespace
 
 Displacement Displacement::studs(float period, float scale)
@@ -163,28 +133,67 @@ Displacement Displacement::studs(float period, float scale)
     return d;
 }
 
-Displacement::Displacement(Topology const& topology, HeightImage image, float scale,
+Displacement::Displacement(std::shared_ptr<RefinedMesh const> mesh, HeightImage image, float scale,
                            HeightWrap wrap)
     : scale_(scale),
       image_(std::move(image)),
-      wrap_(wrap)
+      wrap_(wrap),
+      mesh_(std::move(mesh))
 {
-    if (topology.mesh().face_coordinates.empty())
+    if (mesh_->base().face_coordinates.empty())
         throw Error("the mesh has no texture coordinates for a height map; the built-in pattern "
                     "needs none");
     float highest = 1;
     for (float h : image_.heights) highest = std::max(highest, std::abs(h));
     reach_ = highest * std::abs(scale);
-    std::vector<CornerRecord> corners = owned_corners(topology, TexelFrame(image_, wrap));
-    add_split_corners(topology, corners, split_start_);
+    if (mesh_->base().rules.smooth_coordinates && mesh_->steps() > 0) faces_.emplace(*mesh_);
+    std::vector<CornerRecord> corners =
+        owned_corners(coordinate_topology(), TexelFrame(image_, wrap));
+    add_split_corners(coordinate_topology(), corners, split_start_);
     corners_.resize(corners.size() * C::kFloats);
     std::memcpy(corners_.data(), corners.data(), corners_.size() * sizeof(float));
 }
 
-std::uint32_t Displacement::first_corner(ControlMesh const& mesh, PatchPlace const& p) const
+PatchPlace Displacement::on_coordinates(PatchPlace const& place) const
 {
-    return p.corner == PatchPlace::kWhole ? mesh.face_start[p.face]
+    if (!is_smooth()) return place;
+    auto const [face, turns] = (*faces_)(place);
+    PatchPlace out;
+    out.face = face;
+    out.sides = place.sides;
+    out.rotation = std::uint8_t(turns);
+    return out;
+}
+
+std::uint32_t Displacement::first_corner(PatchPlace const& p) const
+{
+    return p.corner == PatchPlace::kWhole ? coordinate_topology().mesh().face_start[p.face]
                                           : split_start_[p.face] + 4u * p.corner;
+}
+
+std::array<std::uint32_t, 2> Displacement::words(PatchPlace const& place) const
+{
+    PatchPlace const p = on_coordinates(place);
+    auto const face = coordinate_topology().mesh().face(p.face);
+    auto const n = std::uint32_t(face.size());
+    std::uint32_t word = p.rotation;
+    if (p.corner != PatchPlace::kWhole) {
+        std::uint32_t const k = p.corner;
+        bool const first = face[k] > face[(k + 1) % n], last = face[(k + n - 1) % n] > face[k];
+        // Spokes run from the edge's middle to the centre: edge 1 so, edge 2 against it.
+        word |= C::kHalves | (first ? 1u : 0u) << C::kReversed | 4u << C::kReversed |
+                (last ? 8u : 0u) << C::kReversed;
+    } else {
+        // Of a patch that is a part of its face the shader asks in the face's own frame.
+        unsigned const turns = p.level ? 0 : p.rotation;
+        for (unsigned k = 0; k < p.sides; ++k)
+            if (face[(k + turns) % n] > face[(k + 1 + turns) % n])
+                word |= 1u << (unsigned(C::kReversed) + k);
+    }
+    if (p.is_flipped) word |= C::kFlipped;
+    word |= std::uint32_t(p.level) << C::kLevel;
+    word |= (std::uint32_t(p.i) + (std::uint32_t(p.j) << p.level)) << C::kCell;
+    return {first_corner(p), word};
 }
 
 HeightMap Displacement::height_map() const
@@ -199,14 +208,13 @@ HeightMap Displacement::height_map() const
     return map;
 }
 
-double Displacement::slope(ControlMesh const& mesh, PatchPlace const& place, Ray const& ray) const
+double Displacement::slope(PatchPlace const& place, Ray const& ray) const
 {
     return double(scale_) *
-           (image_.heights.empty() ? studs_slope(ray) : image_slope(mesh, place, ray));
+           (image_.heights.empty() ? studs_slope(ray) : image_slope(on_coordinates(place), ray));
 }
 
-double Displacement::image_slope(ControlMesh const& mesh, PatchPlace const& place,
-                                 Ray const& ray) const
+double Displacement::image_slope(PatchPlace const& place, Ray const& ray) const
 {
     // Where the point lies in the patch's unit, and what the step adds to that.
     auto const in_unit = [&](float u, float v) {
@@ -217,8 +225,7 @@ double Displacement::image_slope(ControlMesh const& mesh, PatchPlace const& plac
                      along_v = in_unit(0, 1) - origin;
     glm::dvec2 const at = origin + ray.domain.x * along_u + ray.domain.y * along_v,
                      step = ray.step.x * along_u + ray.step.y * along_v;
-    float const* const corner =
-        corners_.data() + std::size_t(first_corner(mesh, place)) * C::kFloats;
+    float const* const corner = corners_.data() + std::size_t(first_corner(place)) * C::kFloats;
     auto const own = [&](int i) {
         float const* const c = corner + i * C::kFloats;
         return glm::dvec2(c[0], c[1]);
@@ -261,7 +268,7 @@ double Displacement::studs_slope(Ray const& ray) const
            3;
 }
 
-SurfaceEpilog make_surface_epilog(ControlMesh const& mesh, std::span<PatchPlace const> patches,
+SurfaceEpilog make_surface_epilog(std::span<PatchPlace const> patches,
                                   SurfaceSettings const& settings)
 {
     std::shared_ptr<Displacement const> const& displacement = settings.displacement;
@@ -276,7 +283,9 @@ SurfaceEpilog make_surface_epilog(ControlMesh const& mesh, std::span<PatchPlace 
     epilog.scale = displacement->scale();
     epilog.view_projection = settings.view_projection;
     if (!displacement->corners().empty() && !patches.empty()) {
-        memory->words = patch_words(mesh, *displacement, patches);
+        memory->words.reserve(2 * patches.size());
+        for (PatchPlace const& place : patches)
+            for (std::uint32_t word : displacement->words(place)) memory->words.push_back(word);
         epilog.coordinates.sides = patches[0].sides;
         epilog.coordinates.corners = {displacement->corners(), kEpilogSlot + 1,
                                       "texture_coordinates"};

@@ -6,8 +6,7 @@
 
 #include "emu/domain_shader.h"
 #include "pipeline/commands/surface_settings.h"
-#include "pipeline/mesh/patch_place.h"
-#include "pipeline/mesh/topology.h"
+#include "pipeline/mesh/refinement.h"
 #include "shaders_cpp/displacement.h"
 
 #include <variant>
@@ -26,8 +25,10 @@ public:
     /// The built-in solid pattern: studs on a lattice of `period`.
     /// \param scale  displacement at full height, object space; negative is inwards
     static Displacement studs(float period, float scale);
-    /// An image on the texture coordinates of the file's mesh. Throws Error if it has none.
-    Displacement(Topology const& topology, HeightImage image, float scale,
+    /// An image on the texture coordinates of the file's mesh, linear in its faces; with
+    /// SubdivisionRules::smooth_coordinates on those that its steps have made, linear in the faces of
+    /// the drawn mesh. Throws Error if it has none.
+    Displacement(std::shared_ptr<RefinedMesh const> mesh, HeightImage image, float scale,
                  HeightWrap wrap = HeightWrap::Repeat);
     Displacement(Displacement&&) = default;
 
@@ -38,8 +39,8 @@ public:
     float reach() const { return reach_; }
     /// See OwnedCoordinates; empty for the pattern.
     std::span<float const> corners() const { return corners_; }
-    /// The first of a unit's four corners among them.
-    std::uint32_t first_corner(ControlMesh const& mesh, PatchPlace const& place) const;
+    /// OwnedCoordinates::patches of a patch.
+    std::array<std::uint32_t, 2> words(PatchPlace const& place) const;
 
     /// A point of a patch, and a direction to leave it in.
     struct Ray {
@@ -48,16 +49,28 @@ public:
     };
     /// How fast the displacement grows along a unit of the way, as the ray begins: in an image in
     /// the patch's own coordinates, towards the side that it leaves to where the height has a bend.
-    double slope(ControlMesh const& mesh, PatchPlace const& place, Ray const& ray) const;
+    double slope(PatchPlace const& place, Ray const& ray) const;
 
 private:
     Displacement() = default;
-    double image_slope(ControlMesh const& mesh, PatchPlace const& place, Ray const& ray) const;
+    bool is_smooth() const { return faces_.has_value(); }
+    /// Whose faces' corners have the coordinates.
+    Topology const& coordinate_topology() const
+    {
+        return is_smooth() ? mesh_->topology() : mesh_->base_topology();
+    }
+    /// A patch's place on that mesh.
+    PatchPlace on_coordinates(PatchPlace const& place) const;
+    /// Of a place there the first of its unit's four corners.
+    std::uint32_t first_corner(PatchPlace const& place) const;
+    double image_slope(PatchPlace const& place, Ray const& ray) const;
     double studs_slope(Ray const& ray) const;
 
     float scale_ = 0, reach_ = 0, frequency_ = 1;
     HeightImage image_;
     HeightWrap wrap_ = HeightWrap::Repeat;
+    std::shared_ptr<RefinedMesh const> mesh_; // none: the pattern
+    std::optional<FacesByPlace> faces_;       // with smooth coordinates
     std::vector<float> corners_;
     std::vector<std::uint32_t> split_start_; // of a face that is no quad: its quads' corners
 };
@@ -67,8 +80,8 @@ struct SurfaceEpilog {
     std::shared_ptr<void const> memory; ///< what the shader's buffers view
 };
 
-/// Projection, or displacement and projection. `patches` of one shape, by primitive id, on `mesh`.
-SurfaceEpilog make_surface_epilog(ControlMesh const& mesh, std::span<PatchPlace const> patches,
+/// Projection, or displacement and projection. `patches` of one shape, by primitive id.
+SurfaceEpilog make_surface_epilog(std::span<PatchPlace const> patches,
                                   SurfaceSettings const& settings);
 
 } // namespace tessemu

@@ -35,6 +35,37 @@ SkinBuffers skin_of(Pose const& pose)
     return {{pose.skin->vertices, 0, "skin"}, {pose.bones, 1, "bones"}};
 }
 
+namespace {
+
+// To the front of `points`, vertices of RWVectorBuffer::kStride floats.
+void add_skinning(CommandList& list, ControlMesh const& base, SurfaceSettings const& settings,
+                  std::span<float> points, std::array<float, 3> const& origin)
+{
+    constexpr std::size_t kStride = RWVectorBuffer::kStride;
+    std::size_t const vertices = base.positions.size();
+    SkinningComputeShader cs;
+    cs.skin = skin_of(*settings.pose);
+    cs.rest = {positions_of(base).floats, 2, "rest_positions"};
+    cs.moved = {points.first(vertices * kStride), 3, "moved_positions"};
+    cs.stride = int(kStride);
+    cs.origin = origin;
+    list.commands.emplace_back(
+        Dispatch{"skinning", bind_compute_shader(cs, settings.machine), groups_for(vertices, 64)});
+}
+
+} // namespace
+
+VertexSource add_file_vertices(CommandList& list, ControlMesh const& base,
+                               SurfaceSettings const& settings)
+{
+    if (!settings.pose) return positions_of(base);
+    constexpr std::size_t kStride = RWVectorBuffer::kStride;
+    auto const points = std::make_shared<std::vector<float>>(base.positions.size() * kStride);
+    list.memory.push_back(points);
+    add_skinning(list, base, settings, *points, {});
+    return {*points, 3, int(kStride)};
+}
+
 VertexSource add_vertices(CommandList& list, RefinedMesh const& refined,
                           SurfaceSettings const& settings, std::size_t texels,
                           std::array<float, 3> const& origin)
@@ -50,14 +81,7 @@ VertexSource add_vertices(CommandList& list, RefinedMesh const& refined,
         std::make_shared<std::vector<float>>((first + std::max(drawn, texels)) * kStride);
     list.memory.push_back(points);
     if (settings.pose) {
-        SkinningComputeShader cs;
-        cs.skin = skin_of(*settings.pose);
-        cs.rest = {positions_of(base).floats, 2, "rest_positions"};
-        cs.moved = {std::span(*points).first(vertices * kStride), 3, "moved_positions"};
-        cs.stride = int(kStride);
-        cs.origin = origin;
-        list.commands.emplace_back(Dispatch{"skinning", bind_compute_shader(cs, settings.machine),
-                                            groups_for(vertices, 64)});
+        add_skinning(list, base, settings, *points, origin);
     } else {
         for (std::size_t v = 0; v < vertices; ++v)
             for (int k = 0; k < 3; ++k)
@@ -98,8 +122,7 @@ std::span<float const> add_pole_normals(CommandList& list, Poles const& poles,
     return *normals;
 }
 
-void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const& d,
-                    SurfaceSettings const& settings)
+void add_patch_draw(CommandList& list, PatchDraw const& d, SurfaceSettings const& settings)
 {
     Draw out;
     out.name = d.kind.name;
@@ -115,7 +138,7 @@ void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const&
         desc.domain_epilog =
             bind_domain_epilog(CurvedProjectionEpilog{settings.view_projection}, settings.machine);
     } else {
-        SurfaceEpilog epilog = make_surface_epilog(mesh.base(), d.patches, settings);
+        SurfaceEpilog epilog = make_surface_epilog(d.patches, settings);
         desc.domain_epilog = std::visit(
             [&](auto const& e) { return bind_domain_epilog(e, settings.machine); }, epilog.shader);
         list.memory.push_back(std::move(epilog.memory));

@@ -72,6 +72,11 @@ VertexSource positions_of(ControlMesh const& mesh);
 /// A pose as shaders read it: slots 0 and 1.
 SkinBuffers skin_of(Pose const& pose);
 
+/// Where dispatches and draws find the file's vertices, in the settings' pose: the mesh's own memory,
+/// or what a dispatch has moved.
+VertexSource add_file_vertices(CommandList& list, ControlMesh const& base,
+                               SurfaceSettings const& settings);
+
 /// Where dispatches and draws find the drawn mesh's positions. Only the file's vertices are moved
 /// into the settings' pose, by a dispatch; the steps of subdivision, dispatches too, make all
 /// others of them.
@@ -137,8 +142,7 @@ template <class Surface> DomainShader surface_shader(SurfaceSettings const& sett
 
 /// Appends the draw with the settings' epilog: projection, or displacement and projection. Throws
 /// Error for settings that ask for the curvature of a displaced surface.
-void add_patch_draw(CommandList& list, RefinedMesh const& mesh, PatchDraw const& draw,
-                    SurfaceSettings const& settings);
+void add_patch_draw(CommandList& list, PatchDraw const& draw, SurfaceSettings const& settings);
 
 /// Faces of the drawn mesh that are not drawn: the file's holes, and with BoundaryRule::None the
 /// faces at the boundary, with a warning.

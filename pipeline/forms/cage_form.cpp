@@ -86,7 +86,7 @@ CommandList CageForm::commands(SurfaceSettings const& s) const
     VertexSource const source = vertices(list, s);
     for (Group const& g : groups_) {
         if (g.patches.empty()) continue;
-        add_patch_draw(list, mesh(),
+        add_patch_draw(list,
                        {g.kind, source, g.sides, g.indices, g.patches,
                         vertex_shader(s, mesh().steps() == 0), hull_shader(g.sides, s),
                         domain_shader(g.sides, s)},

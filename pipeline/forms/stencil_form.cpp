@@ -41,7 +41,7 @@ CommandList StencilForm::commands(SurfaceSettings const& settings, Tables const&
     for (Group const& g : tables.groups) {
         StencilBuffers const buffers{tables.weights, tables.zero_masks, g.words, g.order, poles};
         DomainShader const domain = prepared_domain_shader(list, positions, g.kind, settings);
-        add_patch_draw(list, mesh(),
+        add_patch_draw(list,
                        {kinds_[g.kind], vertices, g.inputs, g.indices, g.patches, vertex,
                         hull_shader(g.kind, buffers, settings), domain},
                        settings);
@@ -71,7 +71,7 @@ void StencilForm::add_wide_draws(CommandList& list, SurfaceSettings const& setti
             Dispatch{"stencils", bind_compute_shader(cs, settings.machine), groups_for(rows, 64)});
         GatheredBuffers const buffers{g.rows, *sums, g.words, g.constants, poles};
         DomainShader const domain = prepared_domain_shader(list, positions, g.kind, settings);
-        add_patch_draw(list, mesh(),
+        add_patch_draw(list,
                        {kinds_[g.kind],
                         {*sums, 3, 3},
                         g.points,

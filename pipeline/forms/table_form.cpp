@@ -5,6 +5,7 @@
 #include "pipeline/commands/subdivision.h"
 #include "pipeline/forms/table_shaders.h"
 #include "shaders_cpp/bolz/patch_constants_shader.h"
+#include "shaders_cpp/gradient_points_shader.h"
 #include "shaders_cpp/pass_through.h"
 
 #include <algorithm>
@@ -67,16 +68,22 @@ std::vector<SchemeParameter> TableForm::parameters(bool has_tangents, int steps)
                             {std::to_string(steps), "0"}};
     if (steps < 2) shading.words.push_back("2");
     out.insert(out.begin() + 1, std::move(shading));
-    if (has_tangents)
-        out.insert(
-            out.begin() + 1,
-            {"normals",
-             "summed by the weights of positions (subdivision shading), or of the surface, from "
-             "tables of tangents",
-             0,
-             0,
-             0,
-             {"shading", "tangents"}});
+    if (!has_tangents) return out;
+    out.insert(out.begin() + 1,
+               {"normals",
+                "summed by the weights of positions (subdivision shading), or of the surface, from "
+                "tables of tangents",
+                0,
+                0,
+                0,
+                {"shading", "tangents"}});
+    out.push_back({"initial",
+                   "passes before the patches: the steps, then normals of the faces around, or one "
+                   "for all, with normals of the surface by gradient masks",
+                   0,
+                   0,
+                   0,
+                   {"passes", "gradients"}});
     return out;
 }
 
@@ -84,9 +91,9 @@ TableForm::TableForm(std::shared_ptr<RefinedMesh const> refined, Rules const& ru
                      Parameters const& parameters, BuildServices const& services)
     : PatchMesh(std::move(refined)),
       mesher_(parameters.word("mesher") == "pattern" ? Mesher::Pattern : Mesher::Tessellator),
-      normals_(rules.has_tangents && parameters.word("normals") == "tangents" ? Normals::Tangents
-               : parameters.word("shading") == "0"                            ? Normals::Carried
-                                                                              : Normals::Shading),
+      normals_(rules.gradients && parameters.word("normals") == "tangents" ? Normals::Tangents
+               : parameters.word("shading") == "0"                         ? Normals::Carried
+                                                                           : Normals::Shading),
       tables_(
           mesh().topology(), rules.make,
           {.enforced = parameters.word("tables") == "enforced",
@@ -101,6 +108,7 @@ TableForm::TableForm(std::shared_ptr<RefinedMesh const> refined, Rules const& ru
         points_.push_back(p.column);
     }
     add_kinds();
+    if (rules.gradients && parameters.word("initial") == "gradients") add_gradients(rules);
     if (normals_ == Normals::Tangents) add_corner_terms();
     if (normals_ != Normals::Carried) return;
     Topology const& base = mesh().base_topology();
@@ -110,6 +118,27 @@ TableForm::TableForm(std::shared_ptr<RefinedMesh const> refined, Rules const& ru
                                              base.ring(v).empty() || base.is_boundary(v),
                                              file_rings_));
     file_entries_ = entries(vertices);
+}
+
+void TableForm::add_gradients(Rules const& rules)
+{
+    if (normals_ == Normals::Tangents)
+        throw Error("initial=gradients makes normals that normals=tangents does not read");
+    if (normals_ == Normals::Carried)
+        throw Error("initial=gradients makes normals of the surface, shading=0 carries along those "
+                    "of the file's mesh: take one of them");
+    if (mesh().mesh().rules.sectors == SectorRules::Biermann)
+        throw Error("initial=gradients has no masks by Biermann's rules: initial=passes does");
+    gradients_.emplace(rules.gradients(mesh(), tables_.vertices(), tables_.rings()));
+    if (tables_.has_creases())
+        whole_gradients_.emplace(
+            rules.gradients(mesh(), tables_.whole_vertices(), tables_.rings()));
+    // The pass makes no other positions, so factors too are of these.
+    std::vector<std::uint32_t> one_of(mesh().mesh().positions.size());
+    for (std::uint32_t i = 0; i < tables_.vertices().size(); ++i)
+        one_of[tables_.vertices()[i].vertex] = i;
+    for (Kind& k : kinds_)
+        for (std::uint32_t& corner : k.corners) corner = one_of[corner];
 }
 
 std::vector<std::uint32_t> TableForm::entries(std::span<TableVertex const> vertices)
@@ -263,12 +292,39 @@ std::span<float const> TableForm::add_table_vertices(CommandList& list,
     return *vertices;
 }
 
+TableForm::Sources TableForm::add_initial_pass(CommandList& list, SurfaceSettings const& s) const
+{
+    using Shader = GradientPointsShader;
+    std::size_t const count = tables_.vertices().size();
+    auto const vertices =
+        std::make_shared<std::vector<float>>(count * std::size_t(Shader::kFloats));
+    list.memory.push_back(vertices);
+    VertexSource const file = add_file_vertices(list, mesh().base(), s);
+    // Displaced, both sides of a crease have to move along one normal.
+    Gradients const& of = s.displacement && whole_gradients_ ? *whole_gradients_ : *gradients_;
+    Shader cs;
+    cs.first = {of.first, 0, "first_terms"};
+    cs.vertices = {of.vertices, 1, "term_vertices"};
+    cs.weights = {of.weights, 2, "term_weights"};
+    cs.positions = {file.floats, 3, "positions"};
+    cs.points = {*vertices, 4, "table_vertices"};
+    cs.stride = file.stride;
+    list.commands.emplace_back(
+        Dispatch{"initial pass", bind_compute_shader(cs, s.machine), groups_for(count, 64)});
+    return {{*vertices, 3, Shader::kFloats}, *vertices, {}, 0};
+}
+
 CommandList TableForm::commands(SurfaceSettings const& s) const
 {
     CommandList list;
     if (kinds_.empty()) return list;
-    VertexSource const positions = add_vertices(list, mesh(), s);
-    Sources from{positions, add_table_vertices(list, positions, s), {}, 0};
+    Sources from;
+    if (gradients_) {
+        from = add_initial_pass(list, s);
+    } else {
+        from.positions = add_vertices(list, mesh(), s);
+        from.vertices = add_table_vertices(list, from.positions, s);
+    }
     if (mesher_ == Mesher::Pattern) {
         if (s.adaptive_rule.kind != TessFactorRule::Kind::Uniform)
             throw Error("mesher=pattern refines every patch alike: it takes no factors by edge "
@@ -283,7 +339,7 @@ CommandList TableForm::commands(SurfaceSettings const& s) const
     }
     // Displaced, both sides of a crease have to move along one normal, which tangents do not give.
     if (normals_ == Normals::Tangents && !(s.displacement && tables_.has_sharp_edges()))
-        from.corner_normals = add_corner_normals(list, positions, s.machine);
+        from.corner_normals = add_corner_normals(list, from.positions, s.machine);
     for (Kind const& k : kinds_)
         if (k.sides == 3)
             add_draw<TriangleSamples>(list, k, from, s);
@@ -319,7 +375,7 @@ void TableForm::add_draw(CommandList& list, Kind const& k, Sources const& from,
         patch = of_tangents;
     }
     if (!from.pattern) {
-        add_patch_draw(list, mesh(),
+        add_patch_draw(list,
                        {k.kind, from.positions, Samples::kCorners, k.corners, k.places,
                         bind_vertex_shader(PassThroughVertexShader{}, s.machine),
                         Shaders::hull(s.factor_rule(), s.machine),
@@ -336,7 +392,7 @@ void TableForm::add_draw(CommandList& list, Kind const& k, Sources const& from,
     for (std::size_t i = 0; i < out.grid->u.size(); ++i)
         points->insert(points->end(), {out.grid->u[i], out.grid->v[i]});
     list.memory.push_back(points);
-    SurfaceEpilog const epilog = make_surface_epilog(mesh().base(), k.places, s);
+    SurfaceEpilog const epilog = make_surface_epilog(k.places, s);
     list.memory.push_back(epilog.memory);
     out.pipeline.vertex_shader = Shaders::pattern(patch, samples, epilog, s.machine);
     out.call.topology = PrimitiveTopology::TriangleList;

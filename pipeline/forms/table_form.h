@@ -6,6 +6,7 @@
 
 #include "pipeline/basis_tables/mesh_tables.h"
 #include "pipeline/commands/patch_mesh.h"
+#include "pipeline/mesh/gradient_rows.h"
 #include "pipeline/schemes/scheme.h"
 
 namespace tessemu {
@@ -22,7 +23,9 @@ public:
     struct Rules {
         MeshTables::Make make; ///< tables of MeshTables::kSteps steps
         int rings;             ///< of faces around a patch that weigh in it
-        bool has_tangents;
+        /// Of the vertices that patches sum over, after the mesh's steps; none: no tangents.
+        GradientRows (*gradients)(RefinedMesh const&, std::span<TableVertex const>,
+                                  std::span<std::uint32_t const> rings);
     };
     TableForm(std::shared_ptr<RefinedMesh const> mesh, Rules const& rules,
               Parameters const& parameters, BuildServices const& services);
@@ -45,7 +48,7 @@ public:
         Carried,  ///< the same from the file's mesh on: its steps carry the normals along
         Tangents, ///< of the surface, from tables of tangents
     };
-    /// "mesher", "normals" of masks that have tangents, "shading", "tables".
+    /// "mesher", "shading", "tables", of masks that have tangents "normals" and "initial".
     static std::vector<SchemeParameter> parameters(bool has_tangents, int steps);
     /// Of subdivision, that "shading" asks for.
     static int more_steps(Parameters const& parameters, int steps);
@@ -53,7 +56,8 @@ public:
     /// come of each patch alone in single precision.
     template <class Masks> static Rules rules(Parameters const& parameters)
     {
-        Rules out{{}, rings_of<Masks>(), !WideMasks<Masks>};
+        Rules out{{}, rings_of<Masks>(), nullptr};
+        if constexpr (!WideMasks<Masks>) out.gradients = gradient_rows<Masks>;
         if (parameters.word("tables") == "enforced")
             out.make = [](LocalMesh const& type) {
                 return make_local_tables<Masks>(type, MeshTables::kSteps);
@@ -66,6 +70,38 @@ public:
     }
 
 private:
+    template <class Masks>
+    static GradientRows gradient_rows(RefinedMesh const& mesh,
+                                      std::span<TableVertex const> vertices,
+                                      std::span<std::uint32_t const> rings)
+    {
+        Topology const& t = mesh.topology();
+        std::vector<WeightedSum> const x = sums_over_base<Masks>(mesh);
+        GradientMasks<Masks> masks(t);
+        GradientRows out;
+        for (TableVertex const& v : vertices) {
+            auto const faces = t.ring(v.vertex);
+            std::optional<std::size_t> first; // of a side's edges, in the whole ring
+            if (v.ring - (v.is_open ? 1 : 0) < faces.size()) {
+                first = 0;
+                while (t.vertex_of(t.next(faces[*first])) != rings[v.first_ring]) ++*first;
+            }
+            auto const [a, b] = masks.at(v.vertex, first, x);
+            out.add(x[v.vertex], a, b);
+        }
+        return out;
+    }
+    /// GradientPointsShader's, of the vertices that patches sum over.
+    struct Gradients {
+        explicit Gradients(GradientRows const& rows)
+            : first(rows.first),
+              vertices(rows.vertices),
+              weights(rows.weights.begin(), rows.weights.end())
+        {
+        }
+        std::vector<std::uint32_t> first, vertices;
+        std::vector<float> weights;
+    };
     struct Kind {
         PatchKind kind;
         int sides;
@@ -76,6 +112,7 @@ private:
         std::vector<std::uint32_t> types;   ///< of each patch
     };
     void add_kinds();
+    void add_gradients(Rules const& rules);
     HalfEdge half_edge(MeshTables::Patch const& patch, int corner) const;
     void add_corner_terms();
     std::span<float const> add_corner_normals(CommandList& list, VertexSource const& positions,
@@ -90,6 +127,8 @@ private:
     template <class Samples>
     void add_draw(CommandList& list, Kind const& kind, Sources const& from,
                   SurfaceSettings const& settings) const;
+    /// The file's positions to the vertices that patches sum over, in one pass.
+    Sources add_initial_pass(CommandList& list, SurfaceSettings const& settings) const;
     /// \returns  TableBuffers::vertices
     std::span<float const> add_table_vertices(CommandList& list, VertexSource const& positions,
                                               SurfaceSettings const& settings) const;
@@ -108,6 +147,9 @@ private:
     std::vector<std::uint32_t> points_;                    ///< TableBuffers::points
     std::vector<std::uint32_t> sectors_, wholes_;          ///< of the vertices; whatever is sharp
     std::vector<std::uint32_t> file_entries_, file_rings_; ///< of the file's, where Carried
+    /// One pass makes positions and normals: of each sector, and of whatever is sharp, if they are
+    /// two.
+    std::optional<Gradients> gradients_, whole_gradients_;
     std::vector<Kind> kinds_;
 };
 

@@ -96,8 +96,7 @@ CommandList TwoStageForm::commands(SurfaceSettings const& settings) const
     CommandList list;
     // The texture of a mesh at rest is made once; else dispatches before the draws fill another.
     bool const as_it_is = mesh().steps() == 0 && !settings.pose;
-    VertexSource const vertices =
-        add_vertices(list, mesh(), settings, rings_.positions.size() / 4);
+    VertexSource const vertices = add_vertices(list, mesh(), settings, rings_.positions.size() / 4);
     std::span<float const> const positions =
         as_it_is ? std::span<float const>(rings_.positions) : vertices.floats;
     std::span<float const> const poles = add_pole_normals(list, poles_, vertices, settings.machine);
@@ -110,7 +109,7 @@ CommandList TwoStageForm::commands(SurfaceSettings const& settings) const
     for (std::size_t k = 0; k < groups_.size(); ++k) {
         Group const& g = groups_[k];
         if (g.patches.empty()) continue;
-        add_patch_draw(list, mesh(),
+        add_patch_draw(list,
                        {kinds_[k].kind, vertices, kinds_[k].sides, g.indices, g.patches, vertex,
                         hull_shader(k, {g.offsets, g.edges, angles_, g.poles, poles}, settings),
                         domain_shader(k, settings)},
@@ -134,7 +133,7 @@ void TwoStageForm::add_wide_draws(CommandList& list, RingTextures const& texture
             Dispatch{"ring windows",
                      window_shader(textures, {g.windows, wide_constants_, *windows}, settings),
                      groups_for(g.indices.size(), 64)});
-        add_patch_draw(list, mesh(),
+        add_patch_draw(list,
                        {kinds_[k].kind,
                         {*windows, int(kFloats), int(kFloats)},
                         kinds_[k].sides,

@@ -49,6 +49,9 @@ struct SubdivisionRules {
     /// with SectorRules::Biermann; without a value only those of concave sectors, as far as they
     /// need it.
     std::optional<double> flatness = {};
+    /// Texture coordinates that steps make: sums by the masks of positions, a seam being a boundary
+    /// (HOLL10 2B); otherwise linear in faces.
+    bool smooth_coordinates = false;
 
     bool operator==(SubdivisionRules const&) const = default;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/mesh/refined_step.h"
 
+#include "pipeline/mesh/limit_points.h"
+
 namespace tessemu {
 
 namespace {
@@ -50,6 +52,60 @@ void split_coordinates(Topology const& t, bool keeps_triangles, ControlMesh& out
         });
 }
 
+// Texture coordinates as a mesh: its faces, with a vertex for each run of faces around one of the
+// mesh's between seams.
+struct Charts {
+    ControlMesh mesh;
+    std::vector<glm::dvec3> coordinates; ///< by vertex: u, v, 0
+};
+
+Charts charts_of(Topology const& t)
+{
+    ControlMesh const& mesh = t.mesh();
+    auto const at = [&](HalfEdge h) { return mesh.coordinates[mesh.face_coordinates[h]]; };
+    auto const is_seam = [&](HalfEdge h) {
+        HalfEdge const twin = t.twin(h);
+        return twin == Topology::kNone || at(h) != at(t.next(twin)) || at(t.next(h)) != at(twin);
+    };
+    Charts out;
+    std::vector<std::uint32_t> vertex(mesh.face_vertices.size()); // by half-edge
+    std::vector<std::vector<std::uint32_t>> parts(mesh.positions.size());
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+        auto const ring = t.ring(v);
+        std::size_t const n = ring.size();
+        std::size_t first = 0;
+        while (first < n && !is_seam(ring[first])) ++first;
+        if (first == n) first = 0;
+        for (std::size_t j = 0; j < n; ++j) {
+            HalfEdge const h = ring[(first + j) % n];
+            if (j == 0 || is_seam(h)) {
+                parts[v].push_back(std::uint32_t(out.coordinates.size()));
+                out.coordinates.emplace_back(at(h), 0);
+            }
+            vertex[h] = parts[v].back();
+        }
+    }
+    out.mesh.rules = mesh.rules;
+    out.mesh.positions.resize(out.coordinates.size());
+    for (std::uint32_t f = 0; f < mesh.faces(); ++f)
+        out.mesh.add_face(std::span(vertex).subspan(mesh.face_start[f], mesh.face(f).size()));
+    for (auto const& c : mesh.corners)
+        for (std::uint32_t v : parts[c.vertex]) out.mesh.corners.push_back({v, c.sharpness});
+    for (auto const& c : mesh.creases) {
+        HalfEdge const h = t.find_edge(c.a, c.b);
+        if (h == Topology::kNone) continue;
+        out.mesh.creases.push_back({vertex[h], vertex[t.next(h)], c.sharpness});
+        HalfEdge const twin = t.twin(h);
+        if (twin != Topology::kNone && is_seam(h))
+            out.mesh.creases.push_back({vertex[twin], vertex[t.next(twin)], c.sharpness});
+    }
+    for (auto const& [a, b] : mesh.slits)
+        for (std::uint32_t v : parts[a])
+            for (std::uint32_t w : parts[b]) out.mesh.slits.push_back(ordered_edge(v, w));
+    std::sort(out.mesh.slits.begin(), out.mesh.slits.end());
+    return out;
+}
+
 } // namespace
 
 ControlMesh split_mesh(Topology const& t, Sharpness const& sharpness,
@@ -92,6 +148,19 @@ ControlMesh split_mesh(Topology const& t, Sharpness const& sharpness,
     }
     split_coordinates(t, keeps_triangles, out);
     return out;
+}
+
+void smooth_coordinates(Topology const& coarse, RefinementStep const& step, ControlMesh& fine)
+{
+    if (coarse.mesh().rules.sectors == SectorRules::Biermann)
+        throw Error("texture coordinates have no masks by Biermann's rules: coordinates=linear "
+                    "does without");
+    Charts const charts = charts_of(coarse);
+    Topology const t(charts.mesh);
+    Sharpness const sharpness(t);
+    std::vector<glm::dvec3> const points = step.limit->refined(t, sharpness, charts.coordinates);
+    fine.face_coordinates = split_mesh(t, sharpness, points, step.keeps_triangles).face_vertices;
+    fine.coordinates.assign(points.begin(), points.end());
 }
 
 } // namespace tessemu

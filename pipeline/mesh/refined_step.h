@@ -17,6 +17,14 @@ namespace tessemu {
 ControlMesh split_mesh(Topology const& topology, Sharpness const& sharpness,
                        std::span<glm::dvec3 const> points, bool keeps_triangles);
 
+/// Gives the mesh that a step has made texture coordinates by the step's masks, as though seams were
+/// boundaries: where coordinates differ on both sides of an edge, at either end, that edge is one.
+///
+/// \param coarse  that the step was taken of, with coordinates. Throws Error with rules that have no
+///                masks for a part of the mesh (SectorRules::Biermann).
+/// \cost  a step's
+void smooth_coordinates(Topology const& coarse, RefinementStep const& step, ControlMesh& fine);
+
 template <class Masks>
 ControlMesh refined_mesh(Topology const& topology, Sharpness const& sharpness)
 {

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/mesh/refinement.h"
 
+#include "pipeline/mesh/refined_step.h"
+
+#include <algorithm>
+#include <cassert>
+#include <tuple>
+
 namespace tessemu {
 
 RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step,
@@ -43,7 +49,10 @@ RefinedMesh::RefinedMesh(ControlMesh mesh, int steps, RefinementStep step,
     for (int s = 0; s < steps; ++s, work *= 4) {
         ControlMesh const& coarse = s ? *mesh_ : *base_;
         std::uint32_t const first = s ? tables_.back().first_face_point() : 0;
-        RefinedStep refined = step(s ? *topology_ : *base_topology_, first);
+        Topology const& coarse_topology = s ? *topology_ : *base_topology_;
+        RefinedStep refined = step(coarse_topology, first);
+        if (coarse.rules.smooth_coordinates && !coarse.face_coordinates.empty())
+            smooth_coordinates(coarse_topology, step, refined.mesh);
         tell();
         auto fine = std::make_unique<ControlMesh const>(std::move(refined.mesh));
         tables_.push_back(std::move(refined.tables));
@@ -73,6 +82,32 @@ std::string RefinedMesh::vertex_in_words(std::uint32_t v) const
     if (step == tables_.rend()) return "vertex " + std::to_string(base_->file_vertex(old) + 1);
     std::uint32_t const face = topology().face_of(topology().ring(v)[0]);
     return "the middle of face " + std::to_string(base_->file_face(place(face).face) + 1);
+}
+
+namespace {
+
+auto by_place(PatchPlace const& p)
+{
+    return std::tuple(p.face, p.corner, p.level, p.i, p.j, p.is_flipped);
+}
+
+} // namespace
+
+FacesByPlace::FacesByPlace(RefinedMesh const& mesh)
+{
+    for (std::uint32_t f = 0; f < mesh.mesh().faces(); ++f) faces_.emplace_back(mesh.place(f), f);
+    std::sort(faces_.begin(), faces_.end(),
+              [](auto const& a, auto const& b) { return by_place(a.first) < by_place(b.first); });
+}
+
+FacesByPlace::Found FacesByPlace::operator()(PatchPlace const& place) const
+{
+    auto const found = std::lower_bound(
+        faces_.begin(), faces_.end(), place,
+        [](auto const& face, PatchPlace const& p) { return by_place(face.first) < by_place(p); });
+    assert(found != faces_.end() && by_place(found->first) == by_place(place));
+    int const turns = place.rotation - found->first.rotation, sides = place.sides;
+    return {found->second, (turns + sides) % sides};
 }
 
 } // namespace tessemu

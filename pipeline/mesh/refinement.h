@@ -84,4 +84,20 @@ private:
     std::vector<PatchPlace> places_; // by face of mesh()
 };
 
+/// The drawn mesh's faces, by the places of patches on them.
+class FacesByPlace {
+public:
+    explicit FacesByPlace(RefinedMesh const& mesh);
+
+    struct Found {
+        std::uint32_t face; ///< of the drawn mesh
+        int turns;          ///< the patch's corner 0 is the face's corner `turns`
+    };
+    /// Of a patch on a whole face, however it is turned. \cost  a search
+    Found operator()(PatchPlace const& place) const;
+
+private:
+    std::vector<std::pair<PatchPlace, std::uint32_t>> faces_; // ascending by place
+};
+
 } // namespace tessemu

@@ -33,6 +33,9 @@ public:
         return out;
     }
 
+    /// Each point becomes one term.
+    void merge() { terms_ = terms(); }
+
     WeightedSum& operator+=(WeightedSum const& o)
     {
         terms_.insert(terms_.end(), o.terms_.begin(), o.terms_.end());

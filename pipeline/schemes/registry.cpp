@@ -127,12 +127,26 @@ SchemeParameter const& sort_parameter()
     return sort;
 }
 
+SchemeParameter const& coordinates_parameter()
+{
+    static SchemeParameter const coordinates{
+        "coordinates",
+        "texture coordinates that steps make: linear in faces, or by the masks of positions, with "
+        "seams as boundaries",
+        0,
+        0,
+        0,
+        {"linear", "smooth"}};
+    return coordinates;
+}
+
 Parameters resolve_parameters(SchemeInfo const& info, ParameterTexts const& given)
 {
     Parameters out;
     std::string known;
     std::vector<SchemeParameter> all = info.parameters;
     all.push_back(sort_parameter());
+    all.push_back(coordinates_parameter());
     for (SchemeParameter const& p : all) known += (known.empty() ? "" : ", ") + p.name;
     for (SchemeParameter const& p : info.parameters) {
         if (!p.words.empty())
@@ -332,6 +346,20 @@ bool resolve_sort(SchemeInfo const& info, int steps, Parameters& parameters)
     return parameters.word(sort.name) != sort.words[0];
 }
 
+bool resolve_coordinates(SchemeInfo const& info, ControlMesh const& mesh, int steps,
+                         Parameters const& parameters)
+{
+    SchemeParameter const& p = coordinates_parameter();
+    if (!parameters.values().count(p.name) || parameters.word(p.name) == p.words[0]) return false;
+    std::string const what = info.name + ": " + p.name + " is '" + parameters.word(p.name) + "', ";
+    if (steps == 0)
+        throw Error(what +
+                    "and no step of subdivision is taken that would make some (--subdivide)");
+    if (mesh.face_coordinates.empty())
+        throw Error(what + "and the mesh has no texture coordinates");
+    return true;
+}
+
 // What the scheme takes is refined, anything else refused or, unless it must be taken, refined too.
 // Without a scheme the mesh's rules stay what they are.
 SchemeOnMesh refine(SchemeInfo const& info, Scheme const* scheme, ControlMesh mesh,
@@ -378,6 +406,7 @@ SchemeOnMesh refine(SchemeInfo const& info, Scheme const* scheme, ControlMesh me
               more = scheme ? scheme->more_steps(out.parameters) : 0,
               steps = own + options.subdivide + more;
     bool const sorts = resolve_sort(info, steps, out.parameters);
+    mesh.rules.smooth_coordinates = resolve_coordinates(info, mesh, steps, out.parameters);
     if (must_be_taken) // before the work
         refuse(info, facts_of(Topology(mesh)), options.subdivide, !options.strict);
     if (sorts) mesh = sort_by_valence(mesh, info.takes.step(Topology(mesh)).tables);

@@ -125,11 +125,13 @@ std::string in_words(MeshRequirements const& takes);
 
 /// "sort", which every scheme has where steps of subdivision are taken.
 SchemeParameter const& sort_parameter();
+/// "coordinates", which every scheme has where steps are taken of a mesh that has some.
+SchemeParameter const& coordinates_parameter();
 
 /// NAME, VALUE as a user wrote them.
 using ParameterTexts = std::vector<std::pair<std::string, std::string>>;
 /// The scheme's parameters, those not given at their defaults, where they have one;
-/// sort_parameter() where it is given. Throws Error that names the parameter, the value and what is
+/// sort_parameter() and coordinates_parameter() where they are given. Throws Error that names the parameter, the value and what is
 /// allowed.
 Parameters resolve_parameters(SchemeInfo const& info, ParameterTexts const& given);
 
@@ -161,12 +163,12 @@ struct BuildOptions {
 /// Joins vertices if asked to, makes the mesh a manifold, checks it, sorts and refines it as
 /// options and scheme ask, and builds. Throws MeshError for a mesh that the scheme does not take,
 /// or, if strict, that is no manifold, naming a face of the given mesh; LimitError; Error, also for
-/// a sort that is asked for where no step is taken.
+/// a sort or smooth coordinates that are asked for where no step is taken.
 SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions const& options = {});
 /// The mesh alone, refined as for the scheme, whether it takes it or not: `patches` is none.
 SchemeOnMesh refine_for_scheme(Scheme const& scheme, ControlMesh mesh,
                                BuildOptions const& options = {});
-/// The mesh alone after options.subdivide steps and no more: the one parameter is sort_parameter().
+/// The mesh alone after options.subdivide steps and no more: parameters are sort_parameter() and coordinates_parameter().
 SchemeOnMesh refine_for_no_scheme(RefinementStep step, ControlMesh mesh,
                                   BuildOptions const& options = {});
 

@@ -5,7 +5,9 @@
 
 #include "analysis/watertight.h"
 #include "io/model.h"
+#include "pipeline/mesh/limit_points.h"
 #include "pipeline/mesh/loop.h"
+#include "pipeline/mesh/placement.h"
 #include "tests/analysis/loop_stam.h"
 #include "tests/support/edges.h"
 #include "tests/support/limit_samples.h"
@@ -187,55 +189,130 @@ std::vector<Tagged> tagged_meshes()
     return out;
 }
 
-ParameterTexts with_normals(std::string const& scheme, char const* normals)
+// Ways to normals.
+std::vector<ParameterTexts> ways_to_normals(std::string const& scheme)
 {
-    return scheme == "butterfly" ? ParameterTexts{} : ParameterTexts{{"normals", normals}};
+    if (scheme == "butterfly") return {{}};
+    return {{}, {{"normals", "tangents"}}, {{"initial", "gradients"}}};
+}
+std::string in_words(ParameterTexts const& set)
+{
+    std::string out;
+    for (auto const& [name, value] : set) out += name + "=" + value + " ";
+    return out;
+}
+
+// By base vertices that a step's points and their tangents are summed of: positions are the step's,
+// normals the limit's.
+template <class Masks>
+void expect_gradients(ControlMesh const& mesh, int steps, RefinementStep step)
+{
+    RefinedMesh const refined(mesh, steps, step);
+    Topology const& t = refined.topology();
+    std::vector<WeightedSum> const sums = sums_over_base<Masks>(refined);
+    auto const applied = [&](WeightedSum const& of) {
+        Vec sum(0);
+        for (WeightedSum::Term const& term : of.terms())
+            sum += term.weight * Vec(mesh.positions[term.point]);
+        return sum;
+    };
+    std::vector<Vec> x;
+    for (WeightedSum const& sum : sums) x.push_back(applied(sum));
+    ASSERT_EQ(x.size(), refined.mesh().positions.size());
+    double size = 0;
+    for (Vec const& p : x) size = std::max(size, length(p));
+    for (std::size_t v = 0; v < x.size(); ++v)
+        EXPECT_LT(distance(x[v], Vec(refined.mesh().positions[v])), steps * size * 0x1p-23) << v;
+    LimitPoints const limits = limit_points<Masks>(t, x);
+    GradientMasks<Masks> masks(t);
+    std::size_t sides = 0;
+    for (std::uint32_t v = 0; v < x.size(); ++v) {
+        auto const ring = t.ring(v);
+        std::set<std::uint32_t> points;
+        for (HalfEdge h : ring) points.insert(limits.of_corner[h]);
+        for (std::size_t j = 0; j < ring.size(); ++j) {
+            std::uint32_t const point = limits.of_corner[ring[j]];
+            bool const begins =
+                limits.of_corner[ring[(j + ring.size() - 1) % ring.size()]] != point;
+            if (points.size() > 1 && !begins) continue;
+            auto const [a, b] =
+                masks.at(v, points.size() > 1 ? std::optional(j) : std::nullopt, sums);
+            // Doubles through a few dozen terms.
+            EXPECT_LT(distance(normalize(cross(applied(a), applied(b))), limits.normal[point]),
+                      1e-11)
+                << v << ", edge " << j;
+            ++sides;
+            if (points.size() == 1) break;
+        }
+    }
+    EXPECT_GE(sides, x.size());
+}
+
+TEST(GradientRows, AreTheStepsPointsWithTheLimitsNormals)
+{
+    for (auto const& [name, scheme, mesh] : tagged_meshes())
+        for (int steps : {1, 2}) {
+            SCOPED_TRACE(name + ", steps: " + std::to_string(steps));
+            if (scheme == "loop") expect_gradients<Loop>(mesh, steps, loop_step);
+            if (scheme == "catmull-clark")
+                expect_gradients<CatmullClark>(mesh, steps, catmull_clark_step);
+        }
+}
+
+TEST(TableForm, GradientsAreRefusedWhereNothingReadsThem)
+{
+    for (char const* other : {"normals=tangents", "shading=0"}) {
+        std::string const text = other;
+        std::size_t const at = text.find('=');
+        try {
+            tables_on("loop", icosahedron(),
+                      {{"initial", "gradients"}, {text.substr(0, at), text.substr(at + 1)}});
+            ADD_FAILURE() << other;
+        } catch (Error const& e) {
+            EXPECT_NE(std::string(e.what()).find(other), std::string::npos) << e.what();
+        }
+    }
 }
 
 TEST(TableForm, SharedEdgesHaveEqualBitsWithBothMeshersAndAllTags)
 {
     ThreadPool const threads;
     for (auto const& [name, scheme, mesh] : tagged_meshes())
-        for (std::array<char const*, 2> const& choice :
-             {std::array{"tessellator", "shading"}, std::array{"tessellator", "tangents"},
-              std::array{"pattern", "shading"}, std::array{"pattern", "tangents"}}) {
-            SCOPED_TRACE(name + ", " + choice[0] + ", " + choice[1]);
-            if (scheme == "butterfly" && choice[1] == std::string("tangents")) continue;
-            ParameterTexts set = with_normals(scheme, choice[1]);
-            set.emplace_back("mesher", choice[0]);
-            SchemeOnMesh const m = tables_on(scheme, mesh, set);
-            bool const is_pattern = std::string(choice[0]) == "pattern";
-            std::vector<float> const factors =
-                is_pattern ? std::vector{1.0f, 8.0f} : std::vector{1.0f, 4.0f, 7.3f, 17.0f};
-            for (Machine const& machine : test::contraction_policies(20))
-                for (std::size_t i = 0; i < factors.size(); ++i) {
-                    if (!test::meets_case(machine, i, factors.size())) continue;
-                    FrameSettings s;
-                    s.tess_factor = factors[i];
-                    s.machine = machine;
-                    test::EdgeComparison const c = test::compare_edges(*m.patches, s, threads);
-                    ASSERT_GT(c.shared_points, 0u);
-                    ASSERT_EQ(c.lonely_points, 0u);
-                    ASSERT_EQ(c.differing_positions, 0u) << c.first_difference;
-                    if (!m.patches->has_creases()) {
-                        ASSERT_EQ(c.differing_normals, 0u) << c.first_difference;
+        for (bool is_pattern : {false, true})
+            for (ParameterTexts set : ways_to_normals(scheme)) {
+                set.emplace_back("mesher", is_pattern ? "pattern" : "tessellator");
+                SCOPED_TRACE(name + ", " + in_words(set));
+                SchemeOnMesh const m = tables_on(scheme, mesh, set);
+                std::vector<float> const factors =
+                    is_pattern ? std::vector{1.0f, 8.0f} : std::vector{1.0f, 4.0f, 7.3f, 17.0f};
+                for (Machine const& machine : test::contraction_policies(20))
+                    for (std::size_t i = 0; i < factors.size(); ++i) {
+                        if (!test::meets_case(machine, i, factors.size())) continue;
+                        FrameSettings s;
+                        s.tess_factor = factors[i];
+                        s.machine = machine;
+                        test::EdgeComparison const c = test::compare_edges(*m.patches, s, threads);
+                        ASSERT_GT(c.shared_points, 0u);
+                        ASSERT_EQ(c.lonely_points, 0u);
+                        ASSERT_EQ(c.differing_positions, 0u) << c.first_difference;
+                        if (!m.patches->has_creases()) {
+                            ASSERT_EQ(c.differing_normals, 0u) << c.first_difference;
+                        }
                     }
-                }
-        }
+            }
 }
 
 TEST(TableForm, PassesTheCrackCheckInAllPartitioningsAndWithMixedFactors)
 {
     ThreadPool const threads;
     for (auto const& [name, scheme, mesh] : tagged_meshes()) {
-        for (char const* normals : {"shading", "tangents"}) {
-            if (scheme == "butterfly" && normals == std::string("tangents")) continue;
+        for (ParameterTexts const& set : ways_to_normals(scheme)) {
             for (Partitioning p : {Partitioning::Integer, Partitioning::Pow2,
                                    Partitioning::FractionalOdd, Partitioning::FractionalEven})
                 for (bool mixed : {false, true}) {
                     if (test::kSlow && (p != Partitioning::FractionalOdd || !mixed)) continue;
-                    SCOPED_TRACE(name + " " + normals + " " + std::to_string(int(p)));
-                    SchemeOnMesh const m = tables_on(scheme, mesh, with_normals(scheme, normals));
+                    SCOPED_TRACE(name + " " + in_words(set) + std::to_string(int(p)));
+                    SchemeOnMesh const m = tables_on(scheme, mesh, set);
                     WatertightSettings s;
                     s.frame.tess_factor = 5.5f;
                     s.frame.partitioning = p;
@@ -387,6 +464,15 @@ TEST(TableForm, ShadingNearsTheSurfaceWithEachStepAndMovesNoPoint)
                 EXPECT_EQ(moved, 0u) << scheme << steps;
             }
         }
+        double by_gradients = 0;
+        visit({{"mesher", "pattern"}, {"initial", "gradients"}}, 8,
+              [&](auto const& place, auto const& v) {
+                  Vec const d = Vec(v.normal) - own.at(place);
+                  by_gradients += dot(d, d) / double(own.size());
+                  EXPECT_LT(distance(Vec(v.position), positions.at(place)),
+                            1e-6 * bounding_box_diagonal(mesh));
+              });
+        EXPECT_LT(by_gradients, error[0]) << scheme; // on one cage above error[1], on one below
         EXPECT_LT(error[1], error[0]) << scheme;
         EXPECT_LT(error[2], error[1]) << scheme;
     }

@@ -188,7 +188,7 @@ TEST(Determinism, TheCheckingMachineHasTheFastOnesBitsAndCountsInEveryStageOfEve
             if (!m.mesh->base().coordinates.empty()) {
                 HeightImage image{{}, 8, 8};
                 for (int i = 0; i < 64; ++i) image.heights.push_back(float(i * 37 % 64) / 64);
-                maps[2] = std::make_shared<Displacement>(m.mesh->base_topology(), image, 0.05f);
+                maps[2] = std::make_shared<Displacement>(m.mesh, image, 0.05f);
             }
             auto const pose = std::make_shared<Pose>(SpineRig(m.mesh->base()).sway(0.3));
             bool curved = false; // else the curvature view is refused, and of a displaced surface

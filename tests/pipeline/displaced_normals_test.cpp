@@ -44,8 +44,8 @@ TEST(DisplacedNormals, OfALevelMapAreTheSmoothSurfacesBitForBit)
             for (float height : {0.0f, 0.75f}) {
                 SchemeOnMesh const m = on_charts(model, *scheme);
                 HeightImage const level{std::vector<float>(12, height), 4, 3};
-                FrameSettings s = displaced_by(
-                    std::make_shared<Displacement>(m.mesh->base_topology(), level, 1e-6f));
+                FrameSettings s =
+                    displaced_by(std::make_shared<Displacement>(m.mesh, level, 1e-6f));
                 s.true_normals = true;
                 std::vector<glm::vec3> smooth;
                 ListStatistics const plain =
@@ -73,7 +73,7 @@ TEST(DisplacedNormals, PatchesAgreeBitForBitUnderEveryContraction)
             SchemeOnMesh const m = on_charts(model, *scheme);
             std::shared_ptr<Displacement const> const maps[] = {
                 std::make_shared<Displacement>(Displacement::studs(0.1f, 0.05f)),
-                std::make_shared<Displacement>(m.mesh->base_topology(), image, 0.05f)};
+                std::make_shared<Displacement>(m.mesh, image, 0.05f)};
             for (std::size_t map = 0; map < std::size(maps); ++map)
                 for (Contraction contraction : {Contraction::None, Contraction::Mixed}) {
                     FrameSettings s = displaced_by(maps[map]);
@@ -129,8 +129,8 @@ TEST(DisplacedNormals, OfABowlUnderARampAreTheCrossProductOfItsDifferences)
         return glm::dvec3(x, y, c * (x * x + y * y)) + scale * ((column - 2 * row) / 16) * n;
     };
     SchemeOnMesh const m = build_scheme(find_scheme("gregory-stencil"), mesh);
-    FrameSettings const s = displaced_by(std::make_shared<Displacement>(
-        m.mesh->base_topology(), ramp, float(scale), HeightWrap::Clamp));
+    FrameSettings const s =
+        displaced_by(std::make_shared<Displacement>(m.mesh, ramp, float(scale), HeightWrap::Clamp));
     std::size_t checked = 0;
     visit_displaced_surface(*m.patches, s, ThreadPool(), [&](SurfacePatch const& p) {
         std::uint32_t const i = p.place().face % kFaces, j = p.place().face / kFaces;
@@ -171,8 +171,7 @@ TEST(DisplacedNormals, AtAPoleAreTheSmoothSurfaces)
         }
     test::add_charts(mesh);
     SchemeOnMesh const m = build_scheme(find_scheme("gregory-stencil"), mesh);
-    FrameSettings s = displaced_by(
-        std::make_shared<Displacement>(m.mesh->base_topology(), test::noise(16), 0.1f));
+    FrameSettings s = displaced_by(std::make_shared<Displacement>(m.mesh, test::noise(16), 0.1f));
     s.true_normals = true;
     std::vector<glm::vec3> smooth;
     visit_surface(*m.patches, s, ThreadPool(1), [&](SurfacePatch const& p) {

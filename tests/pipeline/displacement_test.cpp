@@ -4,6 +4,7 @@
 #include "tests/pipeline/displaced.h"
 
 #include "io/model.h"
+#include "pipeline/mesh/catmull_clark.h"
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/cages.h"
 #include "tests/support/edges.h"
@@ -21,7 +22,7 @@ void expect_closed_displaced(std::string const& model, std::string const& scheme
     SchemeOnMesh const m = test::build_watertight(find_scheme(scheme), std::move(mesh));
     std::shared_ptr<Displacement const> const maps[] = {
         std::make_shared<Displacement>(Displacement::studs(0.1f, 0.05f)),
-        std::make_shared<Displacement>(m.mesh->base_topology(), image, 0.05f)};
+        std::make_shared<Displacement>(m.mesh, image, 0.05f)};
     for (Machine const& machine : test::contraction_policies())
         for (std::size_t i = 0; i < std::size(maps); ++i) {
             if (!test::meets_case(machine, i, std::size(maps))) continue;
@@ -54,8 +55,8 @@ TEST(Displacement, OwnCoordinatesDifferAcrossASeamAndOwnedOnesDoNot)
     mesh.coordinates = {{0, 0},     {.25f, 0},   {.25f, .25f}, {0, .25f},
                         {.5f, .5f}, {.75f, .5f}, {.75f, .75f}, {.5f, .75f}};
     mesh.face_coordinates = {0, 1, 2, 3, 4, 5, 6, 7};
-    Topology const topology(mesh);
-    Displacement const d(topology, test::noise(16), 1);
+    auto const refined = std::make_shared<RefinedMesh const>(mesh, 0, catmull_clark_step);
+    Displacement const d(refined, test::noise(16), 1);
     // In texels: c 16 - 1/2, rows from the top. A pair's whole number is its face's, edge's or
     // vertex's.
     auto const at = [&](std::size_t corner, std::size_t pair, std::size_t k) {
@@ -84,8 +85,7 @@ TEST(Displacement, MovesPointsAlongTheNormalByTheMap)
     SchemeOnMesh const m = build_scheme(find_scheme("gregory-stencil"), std::move(mesh));
     FrameSettings s;
     s.tess_factor = 5;
-    s.displacement =
-        std::make_shared<Displacement>(m.mesh->base_topology(), test::noise(32), 0.25f);
+    s.displacement = std::make_shared<Displacement>(m.mesh, test::noise(32), 0.25f);
     HeightMap const map = s.displacement->height_map();
     std::size_t inside = 0, moved = 0;
     DrawStatistics const statistics =
@@ -124,8 +124,8 @@ TEST(Displacement, MovesPointsAlongTheNormalByTheMap)
 TEST(Displacement, AMeshWithoutTextureCoordinatesTakesNoImage)
 {
     ControlMesh const mesh = load_model("spindle").mesh;
-    Topology const topology(mesh);
-    EXPECT_THROW(Displacement(topology, test::noise(4), 1), Error);
+    auto const refined = std::make_shared<RefinedMesh const>(mesh, 0, catmull_clark_step);
+    EXPECT_THROW(Displacement(refined, test::noise(4), 1), Error);
     EXPECT_THROW(Displacement::studs(0, 1), Error);
 }
 

@@ -78,7 +78,7 @@ TEST(RefinedSurface, StaysClosedDisplacedByAnImage)
     for_each_refined([&](SchemeOnMesh const& m, std::size_t inner_edges) {
         FrameSettings s;
         s.tess_factor = 4.3f;
-        s.displacement = std::make_shared<Displacement>(m.mesh->base_topology(), image, 0.05f);
+        s.displacement = std::make_shared<Displacement>(m.mesh, image, 0.05f);
         expect_equal_bits(m, s, inner_edges);
     });
 }
@@ -95,8 +95,7 @@ TEST(RefinedSurface, CoordinatesAreTheFacesOwnWhateverItsPatches)
             FrameSettings s;
             s.tess_factor = 2;
             s.partitioning = Partitioning::Integer;
-            s.displacement =
-                std::make_shared<Displacement>(m.mesh->base_topology(), test::noise(16), 0.05f);
+            s.displacement = std::make_shared<Displacement>(m.mesh, test::noise(16), 0.05f);
             std::size_t points = 0;
             visit_surface(*m.patches, s, ThreadPool(1), [&](SurfacePatch const& p) {
                 PatchPlace const& place = p.place();

@@ -290,7 +290,7 @@ TEST(Qas, ControlPointsAndPointsAreTheGoldenOnes)
     mesh.positions.assign(x.begin(), x.end());
     for (Json const& f : golden["faces"]) mesh.add_face(f.get<std::vector<std::uint32_t>>());
     Topology const topology(mesh);
-    LimitRows const rows = loop_limit_rows(topology);
+    GradientRows const rows = loop_limit_rows(topology);
     PointNumbers const number(topology, true);
     std::size_t samples = 0;
     for (Json const& patch : golden["patches"]) {

@@ -237,7 +237,7 @@ private:
             out.kind = kind.kind;
             out.patches = shown->places;
             out.grid = {grid, &grid->points};
-            SurfaceEpilog const epilog = make_surface_epilog(mesh().base(), shown->places, s);
+            SurfaceEpilog const epilog = make_surface_epilog(shown->places, s);
             list.memory.push_back(epilog.memory);
             std::visit(
                 [&](auto const& e) {

@@ -3,11 +3,9 @@
 
 #include "pipeline/mesh/loop.h"
 
-#include <map>
-
 namespace tessemu {
 
-LimitRows loop_limit_rows(Topology const& topology)
+GradientRows loop_limit_rows(Topology const& topology)
 {
     Sharpness const sharpness(topology);
     std::vector<WeightedSum> x;
@@ -19,30 +17,19 @@ LimitRows loop_limit_rows(Topology const& topology)
     Sharpness const left(t);
     Limits<Loop> limits;
     RingSharpness sharp;
-    LimitRows out;
+    GradientRows out;
     for (std::uint32_t v = 0; v < x.size(); ++v) {
         auto const faces = t.ring(v);
-        std::map<std::uint32_t, std::array<double, 3>> terms;
-        auto const add = [&](WeightedSum const& sum, std::size_t which) {
-            for (WeightedSum::Term const& term : sum.terms())
-                terms[term.point][which] += term.weight;
-        };
         if (faces.empty()) {
-            add(x[v], 0);
-        } else {
-            Ring<WeightedSum> ring{x[v], {}, {}};
-            for (HalfEdge h : faces) ring.edge.push_back(x[t.vertex_of(t.next(h))]);
-            if (t.is_boundary(v)) ring.edge.push_back(x[t.vertex_of(t.previous(faces.back()))]);
-            left.around(v, sharp);
-            VertexLimit<WeightedSum> const limit = limits.of(std::move(ring), sharp);
-            add(limit.position, 0);
-            for (std::size_t i : {0, 1}) add(limit.sides[0].tangents[i], 1 + i);
+            out.add(x[v], {}, {});
+            continue;
         }
-        for (auto const& [vertex, weights] : terms) {
-            out.vertices.push_back(vertex);
-            out.weights.insert(out.weights.end(), weights.begin(), weights.end());
-        }
-        out.first.push_back(std::uint32_t(out.vertices.size()));
+        Ring<WeightedSum> ring{x[v], {}, {}};
+        for (HalfEdge h : faces) ring.edge.push_back(x[t.vertex_of(t.next(h))]);
+        if (t.is_boundary(v)) ring.edge.push_back(x[t.vertex_of(t.previous(faces.back()))]);
+        left.around(v, sharp);
+        VertexLimit<WeightedSum> const limit = limits.of(std::move(ring), sharp);
+        out.add(limit.position, limit.sides[0].tangents[0], limit.sides[0].tangents[1]);
     }
     return out;
 }

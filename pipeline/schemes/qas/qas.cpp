@@ -7,7 +7,7 @@
 #include "pipeline/mesh/loop.h"
 #include "pipeline/schemes/qas/limit_rows.h"
 #include "pipeline/schemes/scheme.h"
-#include "shaders_cpp/qas/limit_points_shader.h"
+#include "shaders_cpp/gradient_points_shader.h"
 #include "shaders_cpp/qas/qas_triangle.h"
 
 namespace tessemu {
@@ -22,7 +22,7 @@ public:
         smooth.creases.clear();
         smooth.corners.clear();
         Topology const topology(smooth);
-        LimitRows const rows = loop_limit_rows(topology);
+        GradientRows const rows = loop_limit_rows(topology);
         first_ = rows.first;
         vertices_ = rows.vertices;
         weights_.assign(rows.weights.begin(), rows.weights.end());
@@ -44,10 +44,10 @@ public:
         if (places_.empty()) return list;
         VertexSource const positions = add_vertices(list, mesh(), s);
         std::size_t const count = first_.size() - 1;
-        auto const points =
-            std::make_shared<std::vector<float>>(count * std::size_t(LimitPointsShader::kFloats));
+        auto const points = std::make_shared<std::vector<float>>(
+            count * std::size_t(GradientPointsShader::kFloats));
         list.memory.push_back(points);
-        LimitPointsShader cs;
+        GradientPointsShader cs;
         cs.first = {first_, 0, "first_terms"};
         cs.vertices = {vertices_, 1, "term_vertices"};
         cs.weights = {weights_, 2, "term_weights"};
@@ -56,8 +56,8 @@ public:
         cs.stride = positions.stride;
         list.commands.emplace_back(
             Dispatch{"limit points", bind_compute_shader(cs, s.machine), groups_for(count, 64)});
-        constexpr int kFloats = LimitPointsShader::kFloats;
-        add_patch_draw(list, mesh(),
+        constexpr int kFloats = GradientPointsShader::kFloats;
+        add_patch_draw(list,
                        {kind(), VertexSource{*points, kFloats, kFloats}, QasHullShader::kPoints,
                         indices_, places_, bind_vertex_shader(NormalVertexShader{}, s.machine),
                         bind_hull_shader(QasHullShader{s.factor_rule()}, s.machine),
@@ -75,7 +75,7 @@ public:
 private:
     static PatchKind kind() { return {"triangle", PatchClass::Triangle}; }
 
-    // LimitPointsShader's.
+    // GradientPointsShader's.
     std::vector<std::uint32_t> first_, vertices_;
     std::vector<float> weights_;
     std::vector<PatchPlace> places_;

@@ -1,4 +1,5 @@
-// Points of the limit surface with their normals, sums over a control mesh's vertices.
+// Points with their normals, both sums over a mesh's vertices: limit points, or those that a step of
+// subdivision makes with normals by gradient masks in the same pass (HOLL10 2B).
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -8,8 +9,8 @@
 
 namespace tessemu {
 
-/// One thread a point: the limit mask behind a step of subdivision, and two tangents' masks.
-struct LimitPointsShader {
+/// One thread a point: a mask of its position, and of two tangents.
+struct GradientPointsShader {
     static constexpr std::array<int, 3> kThreads{64, 1, 1};
     static constexpr int kFloats = 6; ///< position and unit normal
 
@@ -31,7 +32,7 @@ struct LimitPointsShader {
         using Int = int_of<T>;
         using V = float3<T>;
         group.for_each_thread([&](ComputeInput<T> const& in) {
-            Int const point = linear_thread<LimitPointsShader>(in);
+            Int const point = linear_thread<GradientPointsShader>(in);
             Int const begin = Int(load<T>(first, point)),
                       count = Int(load<T>(first, point + Int(1))) - begin;
             V sums[3];
