@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plot.h"
 
-#include "io/drawing.h"
+#include "io/canvas.h"
+
+#include <fmt/format.h>
 
 #include <cmath>
 
@@ -9,10 +11,7 @@ namespace tessemu {
 
 namespace {
 
-using OIIO::ImageBuf;
-using OIIO::ROI;
-namespace Algo = OIIO::ImageBufAlgo;
-using Align = Algo::TextAlignX;
+using Align = Canvas::Align;
 
 constexpr int kLeft = 84, kRight = 18, kGap = 18, kTitle = 30, kTicks = 24, kAxisName = 24,
               kLegend = 34, kInset = 12, kText = 14;
@@ -57,18 +56,18 @@ LogScale scale_of(PlotSheet const& sheet, PlotAxis const& axis, Value const& val
     return {axis.base, extent.low, extent.high};
 }
 
-void line(ImageBuf& image, ROI const& clip, float const (&color)[4], double width, double xa,
+void line(Canvas& canvas, PixelBox const& clip, float const (&color)[4], double width, double xa,
           double ya, double xb, double yb)
 {
     double const dx = xb - xa, dy = yb - ya, squared = dx * dx + dy * dy, reach = width / 2 + 1;
     auto const pixel = [](double v, int low, int high) {
         return int(std::clamp(std::floor(v), double(low), double(high)));
     };
-    ROI const near(pixel(std::min(xa, xb) - reach, clip.xbegin, clip.xend),
-                   pixel(std::max(xa, xb) + reach + 1, clip.xbegin, clip.xend),
-                   pixel(std::min(ya, yb) - reach, clip.ybegin, clip.yend),
-                   pixel(std::max(ya, yb) + reach + 1, clip.ybegin, clip.yend));
-    paint(image, near, color, [&](double x, double y) {
+    PixelBox const near{pixel(std::min(xa, xb) - reach, clip.x_begin, clip.x_end),
+                        pixel(std::max(xa, xb) + reach + 1, clip.x_begin, clip.x_end),
+                        pixel(std::min(ya, yb) - reach, clip.y_begin, clip.y_end),
+                        pixel(std::max(ya, yb) + reach + 1, clip.y_begin, clip.y_end)};
+    canvas.paint(near, color, [&](double x, double y) {
         double const t =
             squared == 0 ? 0 : std::clamp(((x - xa) * dx + (y - ya) * dy) / squared, 0.0, 1.0);
         double const ex = x - xa - t * dx, ey = y - ya - t * dy;
@@ -83,14 +82,14 @@ double shrunk(std::size_t which)
 }
 
 // Disc, square, triangle, diamond, downward triangle: in turn.
-void marker(ImageBuf& image, std::size_t which, double cx, double cy)
+void marker(Canvas& canvas, std::size_t which, double cx, double cy)
 {
     double const r = 5.4 * shrunk(which);
     auto const triangle = [r](double x, double y) { // an edge below, a corner on top
         return std::max(y - 0.6 * r, 0.88 * std::abs(x) - 0.47 * y - 0.62 * r);
     };
-    ROI const near(int(cx) - 8, int(cx) + 9, int(cy) - 8, int(cy) + 9);
-    paint(image, near, kColors[which % std::size(kColors)], [&](double px, double py) {
+    PixelBox const near{int(cx) - 8, int(cx) + 9, int(cy) - 8, int(cy) + 9};
+    canvas.paint(near, kColors[which % std::size(kColors)], [&](double px, double py) {
         double const x = px - cx, y = py - cy;
         switch (which % 5) {
         case 0:
@@ -109,38 +108,29 @@ void marker(ImageBuf& image, std::size_t which, double cx, double cy)
 
 int width_of(std::string const& text)
 {
-    return Algo::text_size(text, kText, kFont).width();
+    return Canvas::text_width(text, kText);
 }
 
 constexpr int kSample = 34; // of a curve, in a legend
 
-void draw_sample(ImageBuf& image, std::size_t which, int x, int y, std::string const& name)
+void draw_sample(Canvas& canvas, std::size_t which, int x, int y, std::string const& name)
 {
-    ROI const all(0, image.spec().width, 0, image.spec().height);
-    line(image, all, kColors[which % std::size(kColors)], 2.6 * shrunk(which), x, y, x + kSample,
+    PixelBox const all{0, canvas.width(), 0, canvas.height()};
+    line(canvas, all, kColors[which % std::size(kColors)], 2.6 * shrunk(which), x, y, x + kSample,
          y);
-    marker(image, which, x + kSample / 2.0, y);
-    write_text(image, x + kSample + 6, y, name, Align::Left, kText);
-}
-
-// From bottom to top, its middle at y.
-void upright_text(ImageBuf& image, int x, int y, std::string const& text)
-{
-    int const length = width_of(text) + 8;
-    ImageBuf flat = blank_paper(length, kAxisName);
-    write_text(flat, length / 2, kAxisName / 2, text, Align::Center, kText);
-    Algo::paste(image, x - kAxisName / 2, y - length / 2, 0, 0, Algo::rotate270(flat));
+    marker(canvas, which, x + kSample / 2.0, y);
+    canvas.text(x + kSample + 6, y, name, Align::Left, kText);
 }
 
 class Panel {
 public:
-    Panel(ImageBuf& image, PlotSheet const& sheet, PlotLayout const& layout, std::size_t number)
-        : image_(image),
+    Panel(Canvas& canvas, PlotSheet const& sheet, PlotLayout const& layout, std::size_t number)
+        : canvas_(canvas),
           sheet_(sheet),
           layout_(layout),
           number_(number),
-          frame_(layout.left(number), layout.left(number) + sheet.panel_width, layout.top(number),
-                 layout.top(number) + sheet.panel_height)
+          frame_{layout.left(number), layout.left(number) + sheet.panel_width, layout.top(number),
+                 layout.top(number) + sheet.panel_height}
     {
     }
 
@@ -152,8 +142,8 @@ public:
         for (PlotSeries const& s : plot.series) markers(s);
         if (sheet_.legend == PlotSheet::Legend::Inside) legend();
         box();
-        write_text(image_, (frame_.xbegin + frame_.xend) / 2, frame_.ybegin - kTitle / 2,
-                   plot.title, Align::Center);
+        canvas_.text((frame_.x_begin + frame_.x_end) / 2, frame_.y_begin - kTitle / 2, plot.title,
+                     Align::Center);
         std::size_t const below = number_ + std::size_t(sheet_.columns);
         if (below >= sheet_.panels.size()) name_x();
         if (number_ % std::size_t(sheet_.columns) == 0) name_y();
@@ -166,26 +156,26 @@ private:
     void grid() const
     {
         for (double t : layout_.x_scale().ticks())
-            line(image_, frame_, kGrid, 1, x(t), frame_.ybegin, x(t), frame_.yend);
+            line(canvas_, frame_, kGrid, 1, x(t), frame_.y_begin, x(t), frame_.y_end);
         for (double t : layout_.y_scale().ticks())
-            line(image_, frame_, kGrid, 1, frame_.xbegin, y(t), frame_.xend, y(t));
+            line(canvas_, frame_, kGrid, 1, frame_.x_begin, y(t), frame_.x_end, y(t));
     }
     void box() const
     {
-        double const x0 = frame_.xbegin + 0.5, x1 = frame_.xend - 0.5, y0 = frame_.ybegin + 0.5,
-                     y1 = frame_.yend - 0.5;
-        line(image_, frame_, kFrame, 1, x0, y0, x1, y0);
-        line(image_, frame_, kFrame, 1, x0, y1, x1, y1);
-        line(image_, frame_, kFrame, 1, x0, y0, x0, y1);
-        line(image_, frame_, kFrame, 1, x1, y0, x1, y1);
+        double const x0 = frame_.x_begin + 0.5, x1 = frame_.x_end - 0.5, y0 = frame_.y_begin + 0.5,
+                     y1 = frame_.y_end - 0.5;
+        line(canvas_, frame_, kFrame, 1, x0, y0, x1, y0);
+        line(canvas_, frame_, kFrame, 1, x0, y1, x1, y1);
+        line(canvas_, frame_, kFrame, 1, x0, y0, x0, y1);
+        line(canvas_, frame_, kFrame, 1, x1, y0, x1, y1);
         for (double t : layout_.y_scale().minor_ticks())
-            line(image_, frame_, kFrame, 1, x0, y(t), x0 + 3.5, y(t));
+            line(canvas_, frame_, kFrame, 1, x0, y(t), x0 + 3.5, y(t));
         for (double t : layout_.y_scale().ticks())
-            line(image_, frame_, kFrame, 1, x0, y(t), x0 + 6.5, y(t));
+            line(canvas_, frame_, kFrame, 1, x0, y(t), x0 + 6.5, y(t));
         for (double t : layout_.x_scale().minor_ticks())
-            line(image_, frame_, kFrame, 1, x(t), y1 - 3.5, x(t), y1);
+            line(canvas_, frame_, kFrame, 1, x(t), y1 - 3.5, x(t), y1);
         for (double t : layout_.x_scale().ticks())
-            line(image_, frame_, kFrame, 1, x(t), y1 - 6.5, x(t), y1);
+            line(canvas_, frame_, kFrame, 1, x(t), y1 - 6.5, x(t), y1);
     }
     void lines(PlotSeries const& s) const
     {
@@ -193,7 +183,7 @@ private:
         bool const guide = s.style == PlotSeries::Style::Guide;
         for (std::size_t i = 1; i < s.points.size(); ++i) {
             PlotPoint const &a = s.points[i - 1], &b = s.points[i];
-            line(image_, frame_, guide ? kGuide : kColors[place(s) % std::size(kColors)],
+            line(canvas_, frame_, guide ? kGuide : kColors[place(s) % std::size(kColors)],
                  guide ? 1.5 : 2.6 * shrunk(place(s)), x(a.x), y(a.y), x(b.x), y(b.y));
         }
     }
@@ -201,16 +191,16 @@ private:
     {
         if (s.style == PlotSeries::Style::Guide) return;
         for (PlotPoint const& p : s.points) {
-            marker(image_, place(s), x(p.x), y(p.y));
+            marker(canvas_, place(s), x(p.x), y(p.y));
             if (s.style == PlotSeries::Style::Labels) label(p);
         }
     }
     void label(PlotPoint const& p) const
     {
-        int const at = int(x(p.x)), room = frame_.xend - at;
+        int const at = int(x(p.x)), room = frame_.x_end - at;
         bool const at_left = width_of(p.label) + 20 > room;
-        write_text(image_, at_left ? at - 10 : at + 10, int(y(p.y)), p.label,
-                   at_left ? Align::Right : Align::Left, kText);
+        canvas_.text(at_left ? at - 10 : at + 10, int(y(p.y)), p.label,
+                     at_left ? Align::Right : Align::Left, kText);
     }
     bool in_legend(PlotSeries const& s) const
     {
@@ -221,10 +211,10 @@ private:
     {
         constexpr int kLine = 20;
         auto const& series = sheet_.panels[number_].series;
-        int y = frame_.yend - kInset - kLine / 2;
+        int y = frame_.y_end - kInset - kLine / 2;
         for (auto s = series.rbegin(); s != series.rend(); ++s) {
             if (!in_legend(*s)) continue;
-            draw_sample(image_, place(*s), frame_.xbegin + kInset, y, s->name);
+            draw_sample(canvas_, place(*s), frame_.x_begin + kInset, y, s->name);
             y -= kLine;
         }
     }
@@ -237,27 +227,27 @@ private:
     void name_x() const
     {
         for (double t : layout_.x_scale().ticks())
-            write_text(image_, int(x(t)), frame_.yend + kTicks / 2, LogScale::label(t),
-                       Align::Center, kText);
-        write_text(image_, (frame_.xbegin + frame_.xend) / 2,
-                   frame_.yend + kTicks + kAxisName / 2 - 2, sheet_.x.name, Align::Center, kText);
+            canvas_.text(int(x(t)), frame_.y_end + kTicks / 2, LogScale::label(t), Align::Center,
+                         kText);
+        canvas_.text((frame_.x_begin + frame_.x_end) / 2, frame_.y_end + kTicks + kAxisName / 2 - 2,
+                     sheet_.x.name, Align::Center, kText);
     }
     void name_y() const
     {
         for (double t : layout_.y_scale().ticks())
-            write_text(image_, frame_.xbegin - 8, int(y(t)), LogScale::label(t), Align::Right,
-                       kText);
-        upright_text(image_, kAxisName / 2 + 2, (frame_.ybegin + frame_.yend) / 2, sheet_.y.name);
+            canvas_.text(frame_.x_begin - 8, int(y(t)), LogScale::label(t), Align::Right, kText);
+        canvas_.upright_text(kAxisName / 2 + 2, (frame_.y_begin + frame_.y_end) / 2, sheet_.y.name,
+                             kText, kAxisName);
     }
 
-    ImageBuf& image_;
+    Canvas& canvas_;
     PlotSheet const& sheet_;
     PlotLayout const& layout_;
     std::size_t number_;
-    ROI frame_;
+    PixelBox frame_;
 };
 
-void draw_legend(ImageBuf& image, PlotLayout const& layout)
+void draw_legend(Canvas& canvas, PlotLayout const& layout)
 {
     constexpr int kBetween = 26;
     int length = -kBetween;
@@ -267,7 +257,7 @@ void draw_legend(ImageBuf& image, PlotLayout const& layout)
     int const y = layout.height() - kLegend / 2 - 4;
     for (std::size_t i = 0; i < layout.names().size(); ++i) {
         std::string const& name = layout.names()[i];
-        draw_sample(image, i, x, y, name);
+        draw_sample(canvas, i, x, y, name);
         x += kSample + 6 + width_of(name) + kBetween;
     }
 }
@@ -352,10 +342,10 @@ double PlotLayout::y(std::size_t panel, double value) const
 void write_plots(PlotSheet const& sheet, OutputFile& out)
 {
     PlotLayout const layout(sheet);
-    ImageBuf image = blank_paper(layout.width(), layout.height());
-    for (std::size_t i = 0; i < sheet.panels.size(); ++i) Panel(image, sheet, layout, i).draw();
-    if (sheet.legend == PlotSheet::Legend::Below) draw_legend(image, layout);
-    write_image(image, out);
+    Canvas canvas(layout.width(), layout.height());
+    for (std::size_t i = 0; i < sheet.panels.size(); ++i) Panel(canvas, sheet, layout, i).draw();
+    if (sheet.legend == PlotSheet::Legend::Below) draw_legend(canvas, layout);
+    canvas.write(out);
 }
 
 PlotSheet plot_of(Roofline const& r)
