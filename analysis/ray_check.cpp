@@ -98,6 +98,18 @@ private:
     int exponent_ = 0;
 };
 
+RTCRayHit ray_hit(glm::vec3 origin, glm::vec3 direction)
+{
+    RTCRayHit hit{};
+    hit.ray.org_x = origin.x, hit.ray.org_y = origin.y, hit.ray.org_z = origin.z;
+    hit.ray.dir_x = direction.x, hit.ray.dir_y = direction.y, hit.ray.dir_z = direction.z;
+    hit.ray.tnear = 0;
+    hit.ray.tfar = INFINITY;
+    hit.ray.mask = 0xffffffffu;
+    hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    return hit;
+}
+
 class Scene {
 public:
     Scene(std::vector<glm::vec3> const& positions, std::vector<std::uint32_t> const& triangles)
@@ -124,13 +136,7 @@ public:
 private:
     RTCRayHit trace(glm::vec3 origin, glm::vec3 direction) const
     {
-        RTCRayHit hit{};
-        hit.ray.org_x = origin.x, hit.ray.org_y = origin.y, hit.ray.org_z = origin.z;
-        hit.ray.dir_x = direction.x, hit.ray.dir_y = direction.y, hit.ray.dir_z = direction.z;
-        hit.ray.tnear = 0;
-        hit.ray.tfar = INFINITY;
-        hit.ray.mask = 0xffffffffu;
-        hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        RTCRayHit hit = ray_hit(origin, direction);
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
         rtcIntersect1(scene_.get(), &context, &hit);
@@ -172,25 +178,18 @@ bool is_negative(Exact u, Exact3 const& d, glm::vec3 b, glm::vec3 c)
     return change.x != 0 ? change.x < 0 : change.y != 0 ? change.y < 0 : change.z < 0;
 }
 
+// \param candidates  triangles, ascending: all that the ray may meet
 Crossings cross_exactly(std::vector<glm::vec3> const& positions,
-                        std::vector<std::uint32_t> const& triangles, Ray const& r)
+                        std::vector<std::uint32_t> const& triangles,
+                        std::vector<std::uint32_t> const& candidates, Ray const& r)
 {
-    glm::dvec3 const o(r.origin), d(glm::normalize(glm::dvec3(r.direction)));
     Exact3 const direction{Exact(r.direction.x), Exact(r.direction.y), Exact(r.direction.z)};
     Crossings out;
     Exact best_numerator = 0, best_denominator = 1;
-    for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
-        glm::vec3 const a = positions[triangles[i]], b = positions[triangles[i + 1]],
-                        c = positions[triangles[i + 2]];
-        // Far from the ray: a sphere around the triangle, with room for rounding.
-        glm::dvec3 const middle = (glm::dvec3(a) + glm::dvec3(b) + glm::dvec3(c)) / 3.0,
-                         to = middle - o;
-        double const along = dot(to, d);
-        double const squared = dot(to, to) - along * along;
-        double const radius =
-            std::max({glm::length(glm::dvec3(a) - middle), glm::length(glm::dvec3(b) - middle),
-                      glm::length(glm::dvec3(c) - middle)});
-        if (squared > radius * radius * 1.01 + 1e-12 * dot(to, to)) continue;
+    for (std::uint32_t const triangle : candidates) {
+        std::uint32_t const* const corner = triangles.data() + 3 * std::size_t(triangle);
+        glm::vec3 const a = positions[corner[0]], b = positions[corner[1]],
+                        c = positions[corner[2]];
         Exact3 const A = difference(a, r.origin), B = difference(b, r.origin),
                      C = difference(c, r.origin);
         Exact const u = dot3(direction, cross3(B, C)), v = dot3(direction, cross3(C, A)),
@@ -214,6 +213,61 @@ Crossings cross_exactly(std::vector<glm::vec3> const& positions,
     }
     return out;
 }
+
+// A tree of boxes around triangles, which says what a ray may meet: nothing that it does meet is left
+// out. A ray that meets a triangle passes through the middle of its box, which is widened: Embree
+// takes places on a ray for where it meets a box's planes, each off by a few roundings of a distance.
+// In the mesh's own frame distances from a ray's origin are below 16, so all is off by less than
+// 2^-18.
+class RayCandidates {
+public:
+    RayCandidates(std::vector<glm::vec3> const& positions,
+                  std::vector<std::uint32_t> const& triangles)
+        : positions_(positions),
+          triangles_(triangles),
+          scene_(triangles.size() / 3, this, add_bounds, add_candidate)
+    {
+    }
+
+    /// \param out  ascending
+    void of(Ray const& r, std::vector<std::uint32_t>& out) const
+    {
+        out.clear();
+        Query query{{}, &out};
+        rtcInitIntersectContext(&query.context);
+        RTCRayHit hit = ray_hit(r.origin, r.direction);
+        rtcIntersect1(scene_.get(), &query.context, &hit);
+        std::sort(out.begin(), out.end());
+        out.erase(std::unique(out.begin(), out.end()), out.end());
+    }
+
+private:
+    struct Query {
+        RTCIntersectContext context; // first: Embree hands it on
+        std::vector<std::uint32_t>* found;
+    };
+    static void add_bounds(RTCBoundsFunctionArguments const* args)
+    {
+        constexpr float kWider = 0x1p-13f;
+        auto const& self = *static_cast<RayCandidates const*>(args->geometryUserPtr);
+        std::uint32_t const* const v = self.triangles_.data() + 3 * std::size_t(args->primID);
+        glm::vec3 const &a = self.positions_[v[0]], &b = self.positions_[v[1]],
+                        &c = self.positions_[v[2]];
+        glm::vec3 const low = min(min(a, b), c) - kWider, high = max(max(a, b), c) + kWider;
+        RTCBounds& out = *args->bounds_o;
+        out.lower_x = low.x, out.lower_y = low.y, out.lower_z = low.z;
+        out.upper_x = high.x, out.upper_y = high.y, out.upper_z = high.z;
+    }
+    // Stops no ray.
+    static void add_candidate(RTCIntersectFunctionNArguments const* args)
+    {
+        reinterpret_cast<Query*>(args->context)->found->push_back(args->primID);
+    }
+
+    std::vector<glm::vec3> const& positions_;
+    std::vector<std::uint32_t> const& triangles_;
+    EmbreeScene scene_;
+};
 
 } // namespace
 
@@ -302,9 +356,14 @@ RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::ui
         });
         for (Piece const& p : pieces) out.control_misses += p.control_misses;
     }
+    if (misses.empty()) return out;
+    RayCandidates const tree(positions, mesh.triangles);
     std::vector<Crossings> exact(misses.size());
     threads.parallel_for(misses.size(), [&](std::size_t k) {
-        exact[k] = cross_exactly(positions, mesh.triangles, ray(misses[k]));
+        Ray const r = ray(misses[k]);
+        std::vector<std::uint32_t> candidates;
+        tree.of(r, candidates);
+        exact[k] = cross_exactly(positions, mesh.triangles, candidates, r);
     });
     for (std::size_t k = 0; k < misses.size(); ++k) {
         if (exact[k].balance == 0) {

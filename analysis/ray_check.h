@@ -2,7 +2,7 @@
 //
 // A ray from outside must meet a front before any back. Embree's own answers are not exact: it
 // loses rays that pass close to vertices, in robust mode too. So each ray that seems to slip
-// through is traced again over all triangles in 113-bit arithmetic, whose decisions at an edge are
+// through is traced again over all triangles near it in 113-bit arithmetic, whose decisions at an edge are
 // the same for both of its triangles, and at a vertex for all of them. Through a closed surface as
 // many fronts as backs are crossed on the whole way: where they do not balance the ray found a
 // hole. Where they do, Embree lost a hit, or the surface is folded over itself and shows its
@@ -60,7 +60,8 @@ struct RayCheck {
 
 /// \param rays  at random, entering at 17 degrees from grazing at least. Throws Error for a mesh
 ///              without triangles, or with a point that is not finite.
-/// \cost  about a second a million, and a pass over the triangles for each miss
+/// \cost  about a second a million, and where rays miss a tree of the triangles and their way
+///        through it
 RayCheck check_rays(RayMesh const& mesh, RayAim aim, std::uint64_t rays, std::uint32_t seed,
                     ThreadPool const& threads);
 
