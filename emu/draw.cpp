@@ -19,9 +19,10 @@ namespace {
 constexpr std::size_t kPatchesPerChunk = 8;
 constexpr std::size_t kPrimitivesPerChunk = 512; // of a draw without tessellation
 constexpr std::size_t kChunksPerWave = 128;
-// A draw that streams keeps fragments only: waves grow until they hold about so many.
-constexpr std::uint64_t kFragmentsPerWave = std::uint64_t(1) << 21;
-constexpr std::size_t kMostChunksPerWave = 4096;
+// A draw that streams keeps fragments only: waves grow or shrink until they hold about so many. After
+// each the depth target hides what comes behind it, so waves are as small as threads allow.
+constexpr std::uint64_t kFragmentsPerWave = std::uint64_t(1) << 17;
+constexpr std::size_t kFewestChunksPerWave = 16, kChunksPerThread = 8, kMostChunksPerWave = 4096;
 
 class Drawing {
 public:
@@ -67,7 +68,7 @@ private:
         bool const streams = raster_ && raster_->streams() && !visit_ && !stream_output_;
         bool const counts_only =
             !raster_ && !visit_ && !stream_output_ && stages_.tessellates() && !d_.geometry_shader;
-        std::size_t per_wave = kChunksPerWave;
+        std::size_t per_wave = streams ? fewest_chunks() : kChunksPerWave;
         for (std::size_t first = 0; first < chunks;) {
             std::size_t const n = std::min(per_wave, chunks - first);
             if (wave.size() < n) wave.resize(n);
@@ -99,12 +100,16 @@ private:
         }
     }
 
-    static std::size_t next_wave(std::size_t chunks, std::uint64_t fragments)
+    std::size_t fewest_chunks() const
+    {
+        return std::max(kFewestChunksPerWave, kChunksPerThread * std::size_t(threads_.threads()));
+    }
+    std::size_t next_wave(std::size_t chunks, std::uint64_t fragments) const
     {
         std::uint64_t const fit =
             chunks * kFragmentsPerWave / std::max<std::uint64_t>(1, fragments);
-        return std::size_t(std::clamp<std::uint64_t>(
-            fit, kChunksPerWave, std::min(4 * chunks + kChunksPerWave, kMostChunksPerWave)));
+        std::size_t const most = std::min(4 * chunks + kChunksPerWave, kMostChunksPerWave);
+        return std::size_t(std::clamp<std::uint64_t>(fit, std::min(fewest_chunks(), most), most));
     }
 
     // The cache decides which vertices run, and run again after a miss. They run in blocks; a

@@ -45,35 +45,37 @@ std::uint64_t merge_fragments(RasterTarget const& target, FragmentBins const& bi
     auto* const pixels = reinterpret_cast<std::uint32_t*>(target.color[0]->texel(0, 0));
     bool const or_equal = target.depth_stencil.depth_func == Comparison::LessEqual;
     std::uint32_t const slack = or_equal ? 1 : 0; // a <= b is a < b + 1 in integers
+    std::size_t const words = target.color[0]->format() == Format::R32G32B32A32_FLOAT ? 4 : 1;
     std::uint64_t passed = 0;
-    auto const merge = [&](FragmentBins::Block const& b, std::uint32_t const* rest,
-                           std::uint32_t i) {
-        std::size_t const at = b.texel[i];
-        std::uint32_t const stored = codes[at], z = b.depth[i];
-        bool const pass = z < stored + slack;
-        passed += pass;
-        codes[at] = pass ? z : stored;
-        if (!rest) {
-            std::uint32_t const old = pixels[at], fresh = b.color[i];
-            pixels[at] = pass ? fresh : old;
-            return;
-        }
-        std::uint32_t* const p = pixels + 4 * at;
-        p[0] = pass ? b.color[i] : p[0];
-        for (std::size_t k = 0; k < 3; ++k)
-            p[k + 1] = pass ? rest[k * FragmentBins::kRow + i] : p[k + 1];
-    };
-    constexpr std::uint32_t kAhead = 32, kStep = 4; // a step is a row of a 4x4 block at most
-    bins.for_each_block(tile, [&](FragmentBins::Block const& b, std::uint32_t const* rest) {
-        std::uint32_t const count = b.count;
+    // Nearly all pass, for what lies behind earlier waves is not here: a branch that predicts, and
+    // no old colour to load.
+    auto const merge = [&](FragmentBins::Block const& b, auto const& write) {
+        constexpr std::uint32_t kAhead = 32, kStep = 4; // a row of a 4x4 block at most
+        auto const one = [&](std::uint32_t i) {
+            std::size_t const at = b.texel[i];
+            if (std::uint32_t const z = b.depth[i]; z < codes[at] + slack) {
+                codes[at] = z;
+                write(at, i);
+                ++passed;
+            }
+        };
         std::uint32_t i = 0;
-        for (; i + kStep <= count; i += kStep) {
-            std::size_t const next = b.texel[std::min(i + kAhead, count - 1)];
+        for (; i + kStep <= b.count; i += kStep) {
+            std::size_t const next = b.texel[std::min(i + kAhead, b.count - 1)];
             __builtin_prefetch(codes + next, 1);
-            __builtin_prefetch(pixels + (rest ? 4 * next : next), 1);
-            for (std::uint32_t k = 0; k < kStep; ++k) merge(b, rest, i + k);
+            __builtin_prefetch(pixels + words * next, 1);
+            for (std::uint32_t k = 0; k < kStep; ++k) one(i + k);
         }
-        for (; i < count; ++i) merge(b, rest, i);
+        for (; i < b.count; ++i) one(i);
+    };
+    bins.for_each_block(tile, [&](FragmentBins::Block const& b, std::uint32_t const* rest) {
+        if (!rest)
+            return merge(b, [&](std::size_t at, std::uint32_t i) { pixels[at] = b.color[i]; });
+        merge(b, [&](std::size_t at, std::uint32_t i) {
+            std::uint32_t* const p = pixels + 4 * at;
+            p[0] = b.color[i];
+            for (std::size_t k = 0; k < 3; ++k) p[k + 1] = rest[k * FragmentBins::kRow + i];
+        });
     });
     return passed;
 }

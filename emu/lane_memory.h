@@ -7,6 +7,8 @@
 #include "emu/lanes.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 
 namespace tessemu {
 
@@ -104,6 +106,21 @@ template <int N> void load_vectors(float const* memory, IntLanes<N> index, Lanes
     for (int k = 0; k < 3; ++k) out[k].raw = detail::joined<N>(column[k]);
 }
 
+#if defined(__AVX2__)
+namespace detail {
+// By mask of eight lanes: which of them come to the front.
+inline constexpr auto kCompressed8 = [] {
+    std::array<std::array<std::uint8_t, 8>, 256> table{};
+    for (std::size_t mask = 0; mask < table.size(); ++mask) {
+        std::size_t n = 0;
+        for (std::uint8_t lane = 0; lane < 8; ++lane)
+            if (mask >> lane & 1) table[mask][n++] = lane;
+    }
+    return table;
+}();
+} // namespace detail
+#endif
+
 /// The lanes whose bit is set, moved to the front in order. What follows them is unspecified.
 template <int N> IntLanes<N> compress(IntLanes<N> v, std::uint32_t bits)
 {
@@ -111,6 +128,14 @@ template <int N> IntLanes<N> compress(IntLanes<N> v, std::uint32_t bits)
     if constexpr (N == 16)
         return
             typename IntLanes<N>::Raw(_mm512_maskz_compress_epi32(__mmask16(bits), __m512i(v.raw)));
+#endif
+#if defined(__AVX2__)
+    if constexpr (N == 8) {
+        auto const* const lanes =
+            reinterpret_cast<__m128i const*>(detail::kCompressed8[bits & 0xff].data());
+        return typename IntLanes<N>::Raw(_mm256_permutevar8x32_epi32(
+            __m256i(v.raw), _mm256_cvtepu8_epi32(_mm_loadl_epi64(lanes))));
+    }
 #endif
     IntLanes<N> r(0);
     int n = 0;
@@ -153,6 +178,14 @@ template <int N> IntLanes<N> permute2(IntLanes<N> a, IntLanes<N> b, IntLanes<N> 
     if constexpr (N == 16)
         return typename IntLanes<N>::Raw(
             _mm512_permutex2var_epi32(__m512i(a.raw), __m512i(index.raw), __m512i(b.raw)));
+#endif
+#if defined(__AVX2__)
+    if constexpr (N == 8) {
+        // Three bits choose in each, the fourth between both.
+        IntLanes<N> const in_a = permute(a, index), in_b = permute(b, index);
+        return typename IntLanes<N>::Raw(
+            _mm256_blendv_ps(__m256(in_a.raw), __m256(in_b.raw), __m256((index << 28).raw)));
+    }
 #endif
     return select(index < IntLanes<N>(N), permute(a, index & IntLanes<N>(N - 1)),
                   permute(b, index & IntLanes<N>(N - 1)));

@@ -182,6 +182,17 @@ template <int N> struct Lanes {
             return Raw(_mm512_range_ps(__m512((b + zero).raw), __m512((a + zero).raw), 4));
         }
 #endif
+#if defined(__AVX__)
+        if constexpr (N == 8) {
+            // Of equals both, of a number and none the number: an instruction gives its second.
+            __m256 const x(a.raw), y(b.raw), first = _mm256_min_ps(y, x),
+                                             second = _mm256_min_ps(x, y);
+            __m256 const number = _mm256_blendv_ps(x, y, _mm256_cmp_ps(x, x, _CMP_UNORD_Q));
+            return Lanes(Raw(_mm256_blendv_ps(_mm256_or_ps(first, second), number,
+                                              _mm256_cmp_ps(x, y, _CMP_UNORD_Q)))) +
+                   Lanes(detail::minus_zero);
+        }
+#endif
         Lanes const equal = Raw(Bits(a.raw) | Bits(b.raw));
         return select(a < b, a, select(b < a, b, select(a == b, equal, select(a == a, a, b)))) +
                Lanes(detail::minus_zero);
@@ -192,6 +203,16 @@ template <int N> struct Lanes {
         if constexpr (N == 16) {
             Lanes const zero(detail::minus_zero);
             return Raw(_mm512_range_ps(__m512((b + zero).raw), __m512((a + zero).raw), 5));
+        }
+#endif
+#if defined(__AVX__)
+        if constexpr (N == 8) {
+            __m256 const x(a.raw), y(b.raw), first = _mm256_max_ps(y, x),
+                                             second = _mm256_max_ps(x, y);
+            __m256 const number = _mm256_blendv_ps(x, y, _mm256_cmp_ps(x, x, _CMP_UNORD_Q));
+            return Lanes(Raw(_mm256_blendv_ps(_mm256_and_ps(first, second), number,
+                                              _mm256_cmp_ps(x, y, _CMP_UNORD_Q)))) +
+                   Lanes(detail::minus_zero);
         }
 #endif
         Lanes const equal = Raw(Bits(a.raw) & Bits(b.raw));

@@ -78,6 +78,8 @@ public:
     int input_floats() const { return int(info_.interpolation.size()); }
     virtual void run(ShaderBinding const& binding, FragmentBatch const& batch,
                      StageCounters& counters, StageBuffers const& buffers) const = 0;
+    /// The same bits where counts are known (PixelShaderCost), of a shader that reads no memory.
+    virtual void run_uncounted(ShaderBinding const& binding, FragmentBatch const& batch) const = 0;
     /// Runs one invocation on zeros.
     PixelShaderCost probe(ShaderBinding const& binding) const;
 
@@ -89,9 +91,12 @@ template <class Shader, class T>
 class PixelProgramOn final : public CompiledProgram<PixelProgram, Shader> {
     using CompiledProgram<PixelProgram, Shader>::info_;
     static constexpr int N = lanes_of<T>;
+    template <class U>
+    using OutputOf = std::remove_cvref_t<decltype(std::declval<Shader const&>()(
+        std::declval<PixelInput<U> const&>(),
+        std::declval<typename Shader::template Input<U> const&>()))>;
     using Input = typename Shader::template Input<T>;
-    using Output = std::remove_cvref_t<decltype(std::declval<Shader const&>()(
-        std::declval<PixelInput<T> const&>(), std::declval<Input const&>()))>;
+    using Output = OutputOf<T>;
     static constexpr int color_targets()
     {
         if constexpr (std::same_as<Output, float4<T>> || requires(Output o) { o.color.w; })
@@ -106,14 +111,14 @@ class PixelProgramOn final : public CompiledProgram<PixelProgram, Shader> {
     static constexpr bool kCoverage = requires(Output o) { o.coverage; };
     static constexpr bool kDiscard = requires(Output o) { o.discard; };
 
-    template <class F> static void for_each_color(Output const& o, F&& f)
+    template <class U, class F> static void for_each_color(OutputOf<U> const& o, F&& f)
     {
-        if constexpr (std::same_as<Output, float4<T>>)
+        if constexpr (std::same_as<OutputOf<U>, float4<U>>)
             f(o);
         else if constexpr (requires { o.color.w; })
             f(o.color);
         else if constexpr (requires { o.color; })
-            for (float4<T> const& c : o.color) f(c);
+            for (float4<U> const& c : o.color) f(c);
     }
 
 public:
@@ -136,50 +141,61 @@ public:
     void run(ShaderBinding const& binding, FragmentBatch const& b, StageCounters& counters,
              StageBuffers const& buffers) const override
     {
+        StageScope const scope(counters, buffers, binding.sites());
         if constexpr (ScalarTraits<T>::kSites)
-            run_fragments(binding, b, counters, buffers);
+            counters.invocations += run_fragments<T>(binding, b);
         else
-            run_flattened(binding, b, counters, buffers);
+            counters.invocations += run_flattened<T>(binding, b);
+    }
+    void run_uncounted(ShaderBinding const& binding, FragmentBatch const& b) const override
+    {
+        if constexpr (std::same_as<T, Counted<Lanes<N>>>) {
+            run_flattened<Lanes<N>>(binding, b);
+        } else {
+            StageCounters none;
+            run(binding, b, none, StageBuffers({}));
+        }
     }
 
 private:
     // Flattened for the reason of DomainProgramOn's.
+    template <class U>
 #if !defined(__SANITIZE_ADDRESS__)
     [[gnu::flatten]]
 #endif
-    void
-    run_flattened(ShaderBinding const& binding, FragmentBatch const& b, StageCounters& counters,
-                  StageBuffers const& buffers) const
+    static std::uint64_t
+    run_flattened(ShaderBinding const& binding, FragmentBatch const& b)
     {
-        run_fragments(binding, b, counters, buffers);
+        return run_fragments<U>(binding, b);
     }
 
-    void run_fragments(ShaderBinding const& binding, FragmentBatch const& b,
-                       StageCounters& counters, StageBuffers const& buffers) const
+    /// \returns  invocations
+    template <class U>
+    static std::uint64_t run_fragments(ShaderBinding const& binding, FragmentBatch const& b)
     {
         Shader const& shader = binding.as<Shader>();
-        StageScope const scope(counters, buffers, binding.sites());
+        std::uint64_t invocations = 0;
         for (std::size_t first = 0; first < b.count; first += N) {
             std::uint32_t const active = active_lanes(b, first);
             if (active == 0) continue; // helpers only
-            begin_group<T>(active);
-            auto const lanes = [&](float const* p) { return T(Lanes<N>::load(p + first)); };
-            PixelInput<T> pixel;
+            begin_group<U>(active);
+            auto const lanes = [&](float const* p) { return U(Lanes<N>::load(p + first)); };
+            PixelInput<U> pixel;
             pixel.position = {lanes(b.position[0]), lanes(b.position[1]), lanes(b.position[2]),
                               lanes(b.position[3])};
             __builtin_memcpy(&pixel.primitive_id.raw, b.primitive_id + first, 4 * N);
             __builtin_memcpy(&pixel.front_face.raw, b.front_face + first, 4 * N);
             __builtin_memcpy(&pixel.sample_index.raw, b.sample_index + first, 4 * N);
             __builtin_memcpy(&pixel.coverage.raw, b.coverage + first, 4 * N);
-            pixel.viewport_index = int_of<T>(0);
+            pixel.viewport_index = int_of<U>(0);
             if (b.viewport_index)
                 __builtin_memcpy(&pixel.viewport_index.raw, b.viewport_index + first, 4 * N);
-            Input input{};
+            typename Shader::template Input<U> input{};
             int k = 0;
             for_each_scalar(input, [&](auto& s) { s = lanes(b.attributes[k++]); });
-            Output const out = shader(pixel, input);
+            OutputOf<U> const out = shader(pixel, input);
             k = 0;
-            for_each_color(out, [&](float4<T> const& color) {
+            for_each_color<U>(out, [&](float4<U> const& color) {
                 for_each_scalar(color,
                                 [&](auto const& s) { lanes_value(s).store(b.color[k++] + first); });
             });
@@ -187,8 +203,9 @@ private:
             if constexpr (kCoverage)
                 __builtin_memcpy(b.out_coverage + first, &out.coverage.raw, 4 * N);
             if constexpr (kDiscard) __builtin_memcpy(b.discard + first, &out.discard.raw, 4 * N);
-            counters.invocations += std::uint64_t(std::popcount(active));
+            invocations += std::uint64_t(std::popcount(active));
         }
+        return invocations;
     }
 
     static std::uint32_t active_lanes(FragmentBatch const& b, std::size_t first)
@@ -226,6 +243,10 @@ public:
     using BoundShader::BoundShader;
     PixelShader(BoundShader<PixelProgram> shader) : BoundShader(std::move(shader)) {}
     PixelShaderCost probe() const { return (*this)->probe(binding()); }
+    void run_uncounted(FragmentBatch const& batch) const
+    {
+        (*this)->run_uncounted(binding(), batch);
+    }
 };
 
 template <class Shader> PixelShader bind_pixel_shader(Shader const& shader, Machine const& machine)

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/triangle_stream.h"
 
-#include "emu/lane_memory.h"
-
 #include <bit>
 
 namespace tessemu {
@@ -111,6 +109,12 @@ void TriangleStream::add_patch(DomainPoints const& pattern, std::int32_t primiti
     }
     counters.clip_invocations += triangles;
     counters.clip_primitives += triangles;
+    for (std::int32_t y = origin_y_; y <= high_y >> 8; ++y) { // for drop_hidden()
+        std::uint32_t const* const depths =
+            setup_->target.depth->codes() + std::size_t(y) * std::size_t(pitch_);
+        for (std::int32_t x = origin_x_; x <= (high_x >> 8) + 15; x += 16)
+            __builtin_prefetch(depths + x);
+    }
     // Runs of points may be read past the last one.
     if (packed_.size() < padded + 16) packed_.resize(padded + 16);
     I const ox(origin_x_ * 256), oy(origin_y_ * 256);
@@ -369,13 +373,25 @@ void TriangleStream::cover_huge(std::size_t s)
         }
 }
 
-// The table of covered triangles, and the fragments that wait for it.
+// Covered triangles and the fragments that wait for them.
 void TriangleStream::finish_covered()
 {
     if (queued_ == 0) return;
+    fragments_ += queued_;
+    tabulate_depth();
+    drop_hidden();
+    if (queued_ > 0) {
+        tabulate_attributes();
+        interpolate();
+    }
+    queued_ = covered_ = 0;
+}
+
+// What says how deep a triangle's pixels are.
+void TriangleStream::tabulate_depth()
+{
     I const k16(16), low(0xffff), k8(8);
     I const first_survivor(covered_survivor_[0]);
-    AssembledVertices const& vs = *vertices_;
     for (std::size_t t = 0; t < covered_; t += std::size_t(N)) {
         Mask<N> const live = I::iota() < I(std::int32_t(std::min(std::size_t(N), covered_ - t)));
         I const s = select(live, load_lanes<N>(covered_survivor_ + t), first_survivor);
@@ -405,65 +421,145 @@ void TriangleStream::finish_covered()
         };
         I const c1 = corner(1), c2 = corner(2);
         I const id[3] = {corner(0), select(exchanged, c2, c1), select(exchanged, c1, c2)};
-        auto const differences = [&](int r, float const* column) {
-            F const a = gather(column, id[0]), b = gather(column, id[1]), c = gather(column, id[2]);
-            a.store(float_row(r) + t);
-            (b - a).store(float_row(r + 1) + t);
-            (c - a).store(float_row(r + 2) + t);
-        };
-        differences(kZ, vs.z.data());
-        differences(kW, vs.inverse_w.data());
+        for (int k = 0; k < 3; ++k) store_lanes(id[k], row(kCorner + k) + t);
+        store_differences(kZ, vertices_->z.data(), id, t);
+    }
+}
+
+inline void TriangleStream::store_differences(int r, float const* column, I const (&id)[3],
+                                              std::size_t t)
+{
+    F const a = gather(column, id[0]), b = gather(column, id[1]), c = gather(column, id[2]);
+    a.store(float_row(r) + t);
+    (b - a).store(float_row(r + 1) + t);
+    (c - a).store(float_row(r + 2) + t);
+}
+
+// Of n fragments from q on. They come from at most N neighbouring rows of the table: one load and one
+// permutation each.
+inline TriangleStream::Place TriangleStream::place(std::size_t q, std::size_t n)
+{
+    Place p;
+    Mask<N> const live = Mask<N>::first(int(n));
+    I const pixel = select(live, load_lanes<N>(queue_pixel_ + q), I(0));
+    p.base = queue_triangle_[q];
+    p.index = select(live, load_lanes<N>(queue_triangle_ + q) - I(p.base), I(0));
+    p.px = pixel & I(0xffff), p.py = pixel >> I(16);
+    I const e1 = ints(kA1, p) * p.px + ints(kB1, p) * p.py + ints(kC1, p);
+    I const e2 = ints(kA2, p) * p.px + ints(kB2, p) * p.py + ints(kC2, p);
+    F const inverse = floats(kInverse, p);
+    p.b1 = F(e1) * inverse, p.b2 = F(e2) * inverse;
+    return p;
+}
+
+// As the target holds it, clamped to the viewport (R135).
+inline TriangleStream::I TriangleStream::depth_code(F z) const
+{
+    Viewport const& viewport = setup_->target.viewports[0];
+    F const low(viewport.min_depth), high(viewport.max_depth);
+    F const clamped = select(z >= low, select(z <= high, z, high), low);
+    return I(I::Raw(clamped.raw)) & I(0x7fffffff);
+}
+
+// Fragments that fail against the depth target as waves before this one have left it, and triangles
+// without any other.
+void TriangleStream::drop_hidden()
+{
+    auto const* const codes = reinterpret_cast<std::int32_t const*>(setup_->target.depth->codes());
+    bool const or_equal = setup_->target.depth_stencil.depth_func == Comparison::LessEqual;
+    I const slack(or_equal ? 1 : 0); // codes of depths are whole numbers from 0 on
+    std::size_t kept = 0;
+    for (std::size_t q = 0; q < queued_; q += std::size_t(N)) {
+        std::size_t const n = std::min(std::size_t(N), queued_ - q);
+        Place const p = place(q, n);
+        F const z = floats(kZ, p) + (p.b1 * floats(kDz1, p) + p.b2 * floats(kDz2, p));
+        I const texel = (p.py + I(origin_y_)) * I(pitch_) + (p.px + I(origin_x_));
+        Mask<N> const pass = depth_code(z) < gather(codes, texel) + slack;
+        std::uint32_t const bits = pass.bits() & ((1u << n) - 1);
+        I const pixel = load_lanes<N>(queue_pixel_ + q), t = load_lanes<N>(queue_triangle_ + q);
+        store_lanes(compress(pixel, bits), queue_pixel_ + kept);
+        store_lanes(compress(t, bits), queue_triangle_ + kept);
+        compress(z, bits).store(queue_z_ + kept);
+        kept += std::size_t(std::popcount(bits));
+    }
+    if (kept == queued_) return;
+    queued_ = kept;
+    // Numbers that are left out are closed up.
+    std::int32_t last = -1, left = 0;
+    std::int32_t source[kTableRow];
+    for (std::size_t q = 0; q < queued_; q += std::size_t(N)) {
+        std::size_t const n = std::min(std::size_t(N), queued_ - q);
+        I const t = load_lanes<N>(queue_triangle_ + q);
+        I before = permute(t, max(I::iota() - I(1), I(0)));
+        before.raw[0] = last;
+        last = t.raw[n - 1];
+        std::uint32_t fresh = (t != before).bits() & ((1u << n) - 1);
+        for (; fresh; fresh &= fresh - 1) {
+            std::int32_t const number = t.raw[std::countr_zero(fresh)];
+            number_[number] = left;
+            source[left++] = number;
+        }
+        store_lanes(gather(number_, select(Mask<N>::first(int(n)), t, I(last))),
+                    queue_triangle_ + q);
+    }
+    if (std::size_t(left) == covered_) return;
+    covered_ = std::size_t(left);
+    for (int r = 0; r < kDepthRows; ++r)
+        for (std::size_t t = 0; t < covered_; t += std::size_t(N)) {
+            std::size_t const n = std::min(std::size_t(N), covered_ - t);
+            I const from = select(Mask<N>::first(int(n)), load_lanes<N>(source + t), I(0));
+            store_lanes(gather(row(r), from), row(r) + t);
+        }
+}
+
+void TriangleStream::tabulate_attributes()
+{
+    AssembledVertices const& vs = *vertices_;
+    for (std::size_t t = 0; t < covered_; t += std::size_t(N)) {
+        Mask<N> const live = Mask<N>::first(int(std::min(std::size_t(N), covered_ - t)));
+        I id[3];
+        for (int k = 0; k < 3; ++k) id[k] = select(live, load_lanes<N>(row(kCorner + k) + t), I(0));
+        store_differences(kW, vs.inverse_w.data(), id, t);
         gather(vs.inverse_w.data(), id[1]).store(float_row(kW1) + t);
         gather(vs.inverse_w.data(), id[2]).store(float_row(kW2) + t);
         for (int k = 0; k < attributes_; ++k)
-            differences(kAttributes + 3 * k, vs.shaded + std::size_t(k + 4) * vs.stride);
+            store_differences(kAttributes + 3 * k, vs.shaded + std::size_t(k + 4) * vs.stride, id,
+                              t);
     }
-    interpolate();
-    queued_ = covered_ = 0;
 }
 
-// Fragments of covered triangles become inputs of the pixel shader. A group's fragments come from
-// at most N neighbouring rows of the table: one load and one permutation each.
+// Fragments become inputs of the pixel shader.
 void TriangleStream::interpolate()
 {
     for (std::size_t q = 0; q < queued_; q += std::size_t(N)) {
         if (shaded_ + std::size_t(N) > kShade) shade();
         std::size_t const n = std::min(std::size_t(N), queued_ - q);
-        I const pixel = load_lanes<N>(queue_pixel_ + q);
-        std::int32_t const base = queue_triangle_[q];
-        I index = load_lanes<N>(queue_triangle_ + q) - I(base);
-        if (n < std::size_t(N)) index = select(Mask<N>::first(int(n)), index, I(0));
-        auto const ints = [&](int r) { return permute(load_lanes<N>(row(r) + base), index); };
-        auto const floats = [&](int r) { return permute(F::load(float_row(r) + base), index); };
-        I const px = pixel & I(0xffff), py = pixel >> I(16);
-        I const e1 = ints(kA1) * px + ints(kB1) * py + ints(kC1);
-        I const e2 = ints(kA2) * px + ints(kB2) * py + ints(kC2);
-        F const inverse = floats(kInverse);
-        F const b1 = F(e1) * inverse, b2 = F(e2) * inverse;
-        F const z = floats(kZ) + (b1 * floats(kDz1) + b2 * floats(kDz2));
-        F const w = F(1.0f) / (floats(kW) + (b1 * floats(kDw1) + b2 * floats(kDw2)));
-        F const p1 = b1 * floats(kW1) * w, p2 = b2 * floats(kW2) * w;
+        Place const p = place(q, n);
+        auto const of = [&](int r) { return floats(r, p); };
+        F const z = F::load(queue_z_ + q);
+        F const w = F(1.0f) / (of(kW) + (p.b1 * of(kDw1) + p.b2 * of(kDw2)));
+        F const p1 = p.b1 * of(kW1) * w, p2 = p.b2 * of(kW2) * w;
         std::size_t const at = shaded_;
         for (int k = 0; k < attributes_; ++k) {
             int const r = kAttributes + 3 * k;
             float* const out = attribute_storage_.data() + std::size_t(k) * kShadeRow + at;
             switch (modes_[std::size_t(k)]) {
             case Interpolation::Constant:
-                floats(r).store(out);
+                of(r).store(out);
                 break;
             case Interpolation::LinearNoperspective:
             case Interpolation::LinearNoperspectiveCentroid:
-                (floats(r) + (b1 * floats(r + 1) + b2 * floats(r + 2))).store(out);
+                (of(r) + (p.b1 * of(r + 1) + p.b2 * of(r + 2))).store(out);
                 break;
             default:
-                (floats(r) + (p1 * floats(r + 1) + p2 * floats(r + 2))).store(out);
+                (of(r) + (p1 * of(r + 1) + p2 * of(r + 2))).store(out);
             }
         }
-        I const X = px + I(origin_x_), Y = py + I(origin_y_);
+        I const X = p.px + I(origin_x_), Y = p.py + I(origin_y_);
         store_lanes(X, pixel_x_ + at);
         store_lanes(Y, pixel_y_ + at);
         store_lanes(I(primitive_id_), id_ + at);
-        store_lanes(ints(kFront), front_ + at);
+        store_lanes(ints(kFront, p), front_ + at);
         (F(X) + F(0.5f)).store(position_[0] + at);
         (F(Y) + F(0.5f)).store(position_[1] + at);
         z.store(position_[2] + at);
@@ -519,6 +615,7 @@ void TriangleStream::draw_assembled(AssembledPrimitive const& p)
             for (int l = 0; l < 8; ++l) bits |= std::uint32_t(in[l] & 1) << l;
             bits &= (1u << std::min(8, pixels.right - px)) - 1;
             if (bits == 0) continue;
+            fragments_ += std::size_t(std::popcount(bits));
             if (shaded_ + 8 > kShade) shade();
             F8 const b1 = F8(__builtin_convertvector(e[1], F8::Raw)) * inverse,
                      b2 = F8(__builtin_convertvector(e[2], F8::Raw)) * inverse;
@@ -566,16 +663,11 @@ void TriangleStream::shade()
     batch.sample_index = zeros_;
     batch.coverage = ones_;
     batch.color = color_rows_;
-    setup_->pixel_shader.run(batch, discarded_, setup_->buffers);
-    fragments_ += shaded_;
+    setup_->pixel_shader.run_uncounted(batch);
 
-    Viewport const& viewport = setup_->target.viewports[0];
-    F const low(viewport.min_depth), high(viewport.max_depth);
     for (std::size_t q = 0; q < shaded_; q += std::size_t(N)) {
         int const n = int(std::min(std::size_t(N), shaded_ - q));
-        F const z = F::load(position_[2] + q);
-        F const clamped = select(z >= low, select(z <= high, z, high), low); // R135
-        I const depth = I(I::Raw(clamped.raw)) & I(0x7fffffff);
+        I const depth = depth_code(F::load(position_[2] + q));
         I const x = load_lanes<N>(pixel_x_ + q), y = load_lanes<N>(pixel_y_ + q);
         I const shift(kTileShift);
         I const texel = y * I(pitch_) + x;

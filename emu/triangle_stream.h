@@ -4,17 +4,20 @@
 // The common state: solid triangles, one sample, depth LESS or LESS_EQUAL in 32-bit float, one
 // colour target that is overwritten, a pixel shader of straight-line arithmetic. Such a shader has
 // no side effect and the same cost everywhere, so fragments may be shaded before their depth test;
-// what counts is what passes.
+// what counts is what passes. And depth can but fall: a fragment that fails against what its pixel
+// held at any time of the draw fails in order too, and need not be shaded (R163, I-16). It counts as
+// covered.
 //
 // On the geometry side: set-up and rejection with lanes over triangles, coverage in blocks of 4x4
-// pixels, attributes fetched once a covered triangle, fragments shaded in dense groups and sorted
-// into tiles. On the raster side, tile by tile: the depth test in submission order.
+// pixels, fragments dropped that lie behind what earlier waves left, attributes fetched once a triangle
+// that is left, fragments shaded in dense groups and sorted into tiles. On the raster side, tile by tile: the depth test in submission order.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
 #include "emu/domain_points.h"
 #include "emu/fragment_bins.h"
+#include "emu/lane_memory.h"
 #include "emu/rasterizer.h"
 
 namespace tessemu {
@@ -63,7 +66,9 @@ private:
         kZ,
         kDz1,
         kDz2,
-        kW,
+        kCorner, // three: the corners' vertices
+        kDepthRows = kCorner + 3,
+        kW = kDepthRows,
         kDw1,
         kDw2,
         kW1,
@@ -81,7 +86,21 @@ private:
     void cover_huge(std::size_t survivor);
     void queue_block(std::int32_t corner, std::uint32_t mask, std::int32_t triangle);
     void finish_covered();
+    void tabulate_depth();
+    void drop_hidden();
+    void tabulate_attributes();
+    struct Place {
+        I px, py; ///< of the patch
+        std::int32_t base;
+        I index; ///< of the triangles' rows behind `base`
+        F b1, b2;
+    };
+    Place place(std::size_t q, std::size_t n);
+    I ints(int r, Place const& p) { return permute(load_lanes<N>(row(r) + p.base), p.index); }
+    F floats(int r, Place const& p) { return permute(F::load(float_row(r) + p.base), p.index); }
     void interpolate();
+    void store_differences(int row, float const* column, I const (&id)[3], std::size_t t);
+    I depth_code(F z) const;
     void draw_assembled(AssembledPrimitive const& p);
     void shade();
     std::int32_t* row(int r) { return table_.data() + std::size_t(r) * kTableRow; }
@@ -96,7 +115,6 @@ private:
     std::vector<Interpolation> modes_;
     AssembledVertices* vertices_ = nullptr;
     FragmentBins* bins_ = nullptr;
-    StageCounters discarded_; // what shading before the test counted
     std::uint64_t fragments_ = 0;
 
     // A patch: packed positions relative to its origin, and what identifies it.
@@ -112,6 +130,8 @@ private:
     std::int32_t covered_survivor_[kTableRow];
     std::size_t queued_ = 0;
     std::int32_t queue_pixel_[kQueue + 32], queue_triangle_[kQueue + 32]; // y << 16 | x
+    float queue_z_[kQueue + 32];
+    std::int32_t number_[kTableRow]; // by covered triangle: among those that keep a fragment
     std::size_t shaded_ = 0;
     std::int32_t pixel_x_[kShadeRow], pixel_y_[kShadeRow], id_[kShadeRow], front_[kShadeRow],
         zeros_[kShadeRow], ones_[kShadeRow];
