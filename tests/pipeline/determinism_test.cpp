@@ -212,7 +212,7 @@ TEST(Determinism, TheCheckingMachineHasTheFastOnesBitsAndCountsInEveryStageOfEve
                 for (auto const& map : maps)
                     for (bool moved : {false, true}) {
                         if (!map && &map != maps) continue;
-                        if (test::kSlow && run++ % 5) continue;
+                        if (test::kSlow && run++ % 11) continue;
                         FrameSettings s = settings_for(m);
                         s.displacement = map;
                         if (moved) s.pose = pose;
