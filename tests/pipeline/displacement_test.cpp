@@ -8,6 +8,7 @@
 #include "pipeline/schemes/scheme.h"
 #include "tests/support/cages.h"
 #include "tests/support/edges.h"
+#include "tests/support/sanitized.h"
 
 #include <gtest/gtest.h>
 
@@ -40,6 +41,7 @@ void expect_closed_displaced(std::string const& model, std::string const& scheme
 
 TEST(Displacement, EverySchemeStaysClosedAcrossTextureSeams)
 {
+    if (test::kSlow) GTEST_SKIP() << "with sanitizers Determinism draws every scheme so";
     for (auto const& scheme : schemes())
         for (std::string const& model : test::models_of(*scheme))
             expect_closed_displaced(model, scheme->info().name);

@@ -89,6 +89,7 @@ void expect_closed_adaptive(std::string const& model, std::string const& scheme)
 
 TEST(AdaptiveFactors, EverySchemeStaysClosed)
 {
+    if (test::kSlow) GTEST_SKIP() << "with sanitizers Determinism draws every scheme so";
     for (Scheme const* scheme : test::tessellated_schemes())
         for (std::string const& model : test::models_of(*scheme))
             expect_closed_adaptive(model, scheme->info().name);
@@ -137,6 +138,7 @@ void expect_closed_animated(std::string const& model, std::string const& scheme)
 
 TEST(Animation, EverySchemeStaysClosedInEveryFrame)
 {
+    if (test::kSlow) GTEST_SKIP() << "with sanitizers Determinism draws every scheme so";
     for (auto const& scheme : schemes())
         for (std::string const& model : test::models_of(*scheme))
             expect_closed_animated(model, scheme->info().name);
