@@ -6,6 +6,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -19,7 +20,9 @@ int main()
     RTCDevice const device = rtcNewDevice("threads=1");
     RTCGeometry const geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SUBDIVISION);
     auto* const positions = static_cast<float*>(rtcSetNewGeometryBuffer(
-        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.positions.size()));
+        geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, mesh.positions.size() + 1));
+    // One more: Embree reads four floats of each, and asserts that the last one's are numbers too.
+    std::fill_n(positions + 3 * mesh.positions.size(), 3, 0.0f);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
         for (int k = 0; k < 3; ++k) positions[3 * i + std::size_t(k)] = mesh.positions[i][k];
     std::vector<unsigned> sides, indices;
