@@ -215,10 +215,9 @@ Crossings cross_exactly(std::vector<glm::vec3> const& positions,
 }
 
 // A tree of boxes around triangles, which says what a ray may meet: nothing that it does meet is left
-// out. A ray that meets a triangle passes through the middle of its box, which is widened: Embree
-// takes places on a ray for where it meets a box's planes, each off by a few roundings of a distance.
-// In the mesh's own frame distances from a ray's origin are below 16, so all is off by less than
-// 2^-18.
+// out. A ray that meets a triangle passes through its box. Where it meets the planes of one Embree
+// says in single precision, off by a few roundings of the distance from the ray's origin, which in the
+// mesh's own frame is below 16: by less than 2^-18. So boxes are widened, by more.
 class RayCandidates {
 public:
     RayCandidates(std::vector<glm::vec3> const& positions,

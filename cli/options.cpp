@@ -242,8 +242,9 @@ std::string parse_table_cache(std::string const& text, std::string const& option
 void add_options(Verb& verb, ModelRequest& o)
 {
     add_mesh_options(verb, o,
-                     "NAME=VALUE: a parameter of the scheme, or sort=valence, the order of the "
-                     "mesh that steps of subdivision run on; again for another one");
+                     "NAME=VALUE: a parameter of the scheme, or of steps of subdivision: "
+                     "sort=valence, the order of their mesh; coordinates=smooth, texture "
+                     "coordinates by their masks; again for another one");
     verb.option("--scheme", o.scheme, parse_scheme, "patch scheme, see 'tessemu schemes'",
                 "gregory-stencil");
     verb.option(

@@ -13,11 +13,6 @@ namespace tessemu {
 
 inline constexpr float kInk[4] = {0.15f, 0.16f, 0.2f, 1}, kPaper[4] = {1, 1, 1, 1};
 
-/// Pixels, [begin, end) either way.
-struct PixelBox {
-    int x_begin, x_end, y_begin, y_end;
-};
-
 /// White paper.
 class Canvas {
 public:
@@ -48,10 +43,10 @@ public:
     /// A shape within a clip, its edge smooth over a pixel.
     /// \param distance  (x, y) in pixels: from the shape's edge, negative inside
     template <class Distance>
-    void paint(PixelBox const& clip, float const (&color)[4], Distance const& distance)
+    void paint(Rect const& clip, float const (&color)[4], Distance const& distance)
     {
-        for (int y = std::max(clip.y_begin, 0); y < std::min(clip.y_end, height_); ++y)
-            for (int x = std::max(clip.x_begin, 0); x < std::min(clip.x_end, width_); ++x) {
+        for (int y = std::max(clip.top, 0); y < std::min(clip.bottom, height_); ++y)
+            for (int x = std::max(clip.left, 0); x < std::min(clip.right, width_); ++x) {
                 auto const covered = float(std::clamp(0.5 - distance(x + 0.5, y + 0.5), 0.0, 1.0));
                 if (covered == 0) continue;
                 float* const p = pixel(x, y);

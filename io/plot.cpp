@@ -56,17 +56,17 @@ LogScale scale_of(PlotSheet const& sheet, PlotAxis const& axis, Value const& val
     return {axis.base, extent.low, extent.high};
 }
 
-void line(Canvas& canvas, PixelBox const& clip, float const (&color)[4], double width, double xa,
+void line(Canvas& canvas, Rect const& clip, float const (&color)[4], double width, double xa,
           double ya, double xb, double yb)
 {
     double const dx = xb - xa, dy = yb - ya, squared = dx * dx + dy * dy, reach = width / 2 + 1;
     auto const pixel = [](double v, int low, int high) {
         return int(std::clamp(std::floor(v), double(low), double(high)));
     };
-    PixelBox const near{pixel(std::min(xa, xb) - reach, clip.x_begin, clip.x_end),
-                        pixel(std::max(xa, xb) + reach + 1, clip.x_begin, clip.x_end),
-                        pixel(std::min(ya, yb) - reach, clip.y_begin, clip.y_end),
-                        pixel(std::max(ya, yb) + reach + 1, clip.y_begin, clip.y_end)};
+    Rect const near{pixel(std::min(xa, xb) - reach, clip.left, clip.right),
+                    pixel(std::min(ya, yb) - reach, clip.top, clip.bottom),
+                    pixel(std::max(xa, xb) + reach + 1, clip.left, clip.right),
+                    pixel(std::max(ya, yb) + reach + 1, clip.top, clip.bottom)};
     canvas.paint(near, color, [&](double x, double y) {
         double const t =
             squared == 0 ? 0 : std::clamp(((x - xa) * dx + (y - ya) * dy) / squared, 0.0, 1.0);
@@ -88,7 +88,7 @@ void marker(Canvas& canvas, std::size_t which, double cx, double cy)
     auto const triangle = [r](double x, double y) { // an edge below, a corner on top
         return std::max(y - 0.6 * r, 0.88 * std::abs(x) - 0.47 * y - 0.62 * r);
     };
-    PixelBox const near{int(cx) - 8, int(cx) + 9, int(cy) - 8, int(cy) + 9};
+    Rect const near{int(cx) - 8, int(cy) - 8, int(cx) + 9, int(cy) + 9};
     canvas.paint(near, kColors[which % std::size(kColors)], [&](double px, double py) {
         double const x = px - cx, y = py - cy;
         switch (which % 5) {
@@ -115,7 +115,7 @@ constexpr int kSample = 34; // of a curve, in a legend
 
 void draw_sample(Canvas& canvas, std::size_t which, int x, int y, std::string const& name)
 {
-    PixelBox const all{0, canvas.width(), 0, canvas.height()};
+    Rect const all{0, 0, canvas.width(), canvas.height()};
     line(canvas, all, kColors[which % std::size(kColors)], 2.6 * shrunk(which), x, y, x + kSample,
          y);
     marker(canvas, which, x + kSample / 2.0, y);
@@ -129,7 +129,7 @@ public:
           sheet_(sheet),
           layout_(layout),
           number_(number),
-          frame_{layout.left(number), layout.left(number) + sheet.panel_width, layout.top(number),
+          frame_{layout.left(number), layout.top(number), layout.left(number) + sheet.panel_width,
                  layout.top(number) + sheet.panel_height}
     {
     }
@@ -142,7 +142,7 @@ public:
         for (PlotSeries const& s : plot.series) markers(s);
         if (sheet_.legend == PlotSheet::Legend::Inside) legend();
         box();
-        canvas_.text((frame_.x_begin + frame_.x_end) / 2, frame_.y_begin - kTitle / 2, plot.title,
+        canvas_.text((frame_.left + frame_.right) / 2, frame_.top - kTitle / 2, plot.title,
                      Align::Center);
         std::size_t const below = number_ + std::size_t(sheet_.columns);
         if (below >= sheet_.panels.size()) name_x();
@@ -156,14 +156,14 @@ private:
     void grid() const
     {
         for (double t : layout_.x_scale().ticks())
-            line(canvas_, frame_, kGrid, 1, x(t), frame_.y_begin, x(t), frame_.y_end);
+            line(canvas_, frame_, kGrid, 1, x(t), frame_.top, x(t), frame_.bottom);
         for (double t : layout_.y_scale().ticks())
-            line(canvas_, frame_, kGrid, 1, frame_.x_begin, y(t), frame_.x_end, y(t));
+            line(canvas_, frame_, kGrid, 1, frame_.left, y(t), frame_.right, y(t));
     }
     void box() const
     {
-        double const x0 = frame_.x_begin + 0.5, x1 = frame_.x_end - 0.5, y0 = frame_.y_begin + 0.5,
-                     y1 = frame_.y_end - 0.5;
+        double const x0 = frame_.left + 0.5, x1 = frame_.right - 0.5, y0 = frame_.top + 0.5,
+                     y1 = frame_.bottom - 0.5;
         line(canvas_, frame_, kFrame, 1, x0, y0, x1, y0);
         line(canvas_, frame_, kFrame, 1, x0, y1, x1, y1);
         line(canvas_, frame_, kFrame, 1, x0, y0, x0, y1);
@@ -197,7 +197,7 @@ private:
     }
     void label(PlotPoint const& p) const
     {
-        int const at = int(x(p.x)), room = frame_.x_end - at;
+        int const at = int(x(p.x)), room = frame_.right - at;
         bool const at_left = width_of(p.label) + 20 > room;
         canvas_.text(at_left ? at - 10 : at + 10, int(y(p.y)), p.label,
                      at_left ? Align::Right : Align::Left, kText);
@@ -211,10 +211,10 @@ private:
     {
         constexpr int kLine = 20;
         auto const& series = sheet_.panels[number_].series;
-        int y = frame_.y_end - kInset - kLine / 2;
+        int y = frame_.bottom - kInset - kLine / 2;
         for (auto s = series.rbegin(); s != series.rend(); ++s) {
             if (!in_legend(*s)) continue;
-            draw_sample(canvas_, place(*s), frame_.x_begin + kInset, y, s->name);
+            draw_sample(canvas_, place(*s), frame_.left + kInset, y, s->name);
             y -= kLine;
         }
     }
@@ -227,16 +227,16 @@ private:
     void name_x() const
     {
         for (double t : layout_.x_scale().ticks())
-            canvas_.text(int(x(t)), frame_.y_end + kTicks / 2, LogScale::label(t), Align::Center,
+            canvas_.text(int(x(t)), frame_.bottom + kTicks / 2, LogScale::label(t), Align::Center,
                          kText);
-        canvas_.text((frame_.x_begin + frame_.x_end) / 2, frame_.y_end + kTicks + kAxisName / 2 - 2,
+        canvas_.text((frame_.left + frame_.right) / 2, frame_.bottom + kTicks + kAxisName / 2 - 2,
                      sheet_.x.name, Align::Center, kText);
     }
     void name_y() const
     {
         for (double t : layout_.y_scale().ticks())
-            canvas_.text(frame_.x_begin - 8, int(y(t)), LogScale::label(t), Align::Right, kText);
-        canvas_.upright_text(kAxisName / 2 + 2, (frame_.y_begin + frame_.y_end) / 2, sheet_.y.name,
+            canvas_.text(frame_.left - 8, int(y(t)), LogScale::label(t), Align::Right, kText);
+        canvas_.upright_text(kAxisName / 2 + 2, (frame_.top + frame_.bottom) / 2, sheet_.y.name,
                              kText, kAxisName);
     }
 
@@ -244,7 +244,7 @@ private:
     PlotSheet const& sheet_;
     PlotLayout const& layout_;
     std::size_t number_;
-    PixelBox frame_;
+    Rect frame_;
 };
 
 void draw_legend(Canvas& canvas, PlotLayout const& layout)

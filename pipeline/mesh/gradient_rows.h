@@ -7,9 +7,16 @@
 #include "pipeline/mesh/limit.h"
 #include "pipeline/mesh/refined_step.h"
 
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <map>
+#include <memory>
+#include <optional>
+
 namespace tessemu {
 
-/// Rows of weights over a mesh's vertices.
+/// Rows of weights over a mesh's vertices, as GradientPointsShader reads them.
 struct GradientRows {
     std::vector<std::uint32_t> first{0}; ///< [point + 1]: where its terms begin
     std::vector<std::uint32_t> vertices; ///< of each term
@@ -32,7 +39,7 @@ struct GradientRows {
     }
 };
 
-/// The drawn mesh's vertices as sums over the file's.
+/// The drawn mesh's vertices as sums over the file's. \cost  the steps', of rows instead of points
 template <class Masks> std::vector<WeightedSum> sums_over_base(RefinedMesh const& mesh)
 {
     std::vector<WeightedSum> x;
@@ -92,7 +99,9 @@ public:
             limit = limits_.of(std::move(ring), smooth);
             side = limit.sides.begin();
         } else if (first) {
-            while (side->first_face != *first) ++side;
+            side = std::find_if(side, limit.sides.end(),
+                                [&](auto const& s) { return s.first_face == *first; });
+            assert(side != limit.sides.end());
         }
         Sums out;
         for (std::size_t k : {0, 1})

@@ -152,6 +152,7 @@ ControlMesh split_mesh(Topology const& t, Sharpness const& sharpness,
 
 void smooth_coordinates(Topology const& coarse, RefinementStep const& step, ControlMesh& fine)
 {
+    if (!step.limit) throw Error("a step without limit rules has no masks for texture coordinates");
     if (coarse.mesh().rules.sectors == SectorRules::Biermann)
         throw Error("texture coordinates have no masks by Biermann's rules: coordinates=linear "
                     "does without");

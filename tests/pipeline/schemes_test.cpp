@@ -204,7 +204,7 @@ TEST(Schemes, DrawTheMeshesTheySayAndNameOthersForTheRest)
             }
         }
     EXPECT_GT(drawn, 20u);
-    EXPECT_GT(refused, test::kSlow ? 3u : 5u);
+    EXPECT_GT(refused, test::kSlow ? 3u : 5u); // with sanitizers of four meshes, not of seven
 }
 
 TEST(Schemes, TagsThatAreNotHonouredAreWarnedOf)

@@ -1,0 +1,268 @@
+// From covered pixels to shaded fragments by tile: depth, what is hidden, attributes, pixel shader.
+//
+// SPDX-License-Identifier: Apache-2.0
+#include "emu/triangle_stream.h"
+
+#include <bit>
+
+namespace tessemu {
+
+// Covered triangles and the fragments that wait for them.
+void TriangleStream::finish_covered()
+{
+    if (queued_ == 0) return;
+    fragments_ += queued_;
+    tabulate_depth();
+    drop_hidden();
+    if (queued_ > 0) {
+        tabulate_attributes();
+        interpolate();
+    }
+    queued_ = covered_ = 0;
+}
+
+// What says how deep a triangle's pixels are.
+void TriangleStream::tabulate_depth()
+{
+    I const k16(16), low(0xffff), k8(8);
+    I const first_survivor(covered_survivor_[0]);
+    for (std::size_t t = 0; t < covered_; t += std::size_t(N)) {
+        Mask<N> const live = I::iota() < I(std::int32_t(std::min(std::size_t(N), covered_ - t)));
+        I const s = select(live, load_lanes<N>(covered_survivor_ + t), first_survivor);
+        I const v0 = gather(survivor_[0], s), v1 = gather(survivor_[1], s),
+                v2 = gather(survivor_[2], s);
+        I const x0 = v0 & low, x1 = v1 & low, x2 = v2 & low;
+        I const y0 = v0 >> k16, y1 = v1 >> k16, y2 = v2 >> k16;
+        // Edge functions over pixel numbers, exact modulo 2^32; inside the triangle they lie
+        // between 0 and its area, which fits. Edge 1 runs from vertex 2 to 0, edge 2 from 0 to 1.
+        auto const edge = [&](int r, I ax, I ay, I bx, I by) {
+            I const dx = bx - ax, dy = by - ay;
+            store_lanes(I(0) - (dy << k8), row(r) + t);
+            store_lanes(dx << k8, row(r + 1) + t);
+            store_lanes(dx * (I(128) - ay) - dy * (I(128) - ax), row(r + 2) + t);
+        };
+        edge(kA1, x2, y2, x0, y0);
+        edge(kA2, x0, y0, x1, y1);
+        I const area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
+        (F(1.0f) / F(area)).store(float_row(kInverse) + t);
+        I const tag = gather(survivor_[3], s);
+        Mask<N> const exchanged = (tag & I(1)) != I(0);
+        Mask<N> const front = assembler_->front_is_clockwise() ? !exchanged : exchanged;
+        store_lanes(I(I::Raw(front.raw)), row(kFront) + t);
+        auto const corner = [&](std::size_t k) {
+            return gather(reinterpret_cast<std::int32_t const*>(pattern_->corner[k].data()),
+                          tag >> I(1));
+        };
+        I const c1 = corner(1), c2 = corner(2);
+        I const id[3] = {corner(0), select(exchanged, c2, c1), select(exchanged, c1, c2)};
+        for (int k = 0; k < 3; ++k) store_lanes(id[k], row(kCorner + k) + t);
+        store_differences(kZ, vertices_->z.data(), id, t);
+    }
+}
+
+inline void TriangleStream::store_differences(int r, float const* column, I const (&id)[3],
+                                              std::size_t t)
+{
+    F const a = gather(column, id[0]), b = gather(column, id[1]), c = gather(column, id[2]);
+    a.store(float_row(r) + t);
+    (b - a).store(float_row(r + 1) + t);
+    (c - a).store(float_row(r + 2) + t);
+}
+
+// Of n fragments from q on. They come from at most N neighbouring rows of the table: one load and one
+// permutation each.
+inline TriangleStream::Place TriangleStream::place(std::size_t q, std::size_t n)
+{
+    Place p;
+    Mask<N> const live = Mask<N>::first(int(n));
+    I const pixel = select(live, load_lanes<N>(queue_pixel_ + q), I(0));
+    p.base = queue_triangle_[q];
+    p.index = select(live, load_lanes<N>(queue_triangle_ + q) - I(p.base), I(0));
+    p.px = pixel & I(0xffff), p.py = pixel >> I(16);
+    I const e1 = ints(kA1, p) * p.px + ints(kB1, p) * p.py + ints(kC1, p);
+    I const e2 = ints(kA2, p) * p.px + ints(kB2, p) * p.py + ints(kC2, p);
+    F const inverse = floats(kInverse, p);
+    p.b1 = F(e1) * inverse, p.b2 = F(e2) * inverse;
+    return p;
+}
+
+// As the target holds it, clamped to the viewport (R135).
+inline TriangleStream::I TriangleStream::depth_code(F z) const
+{
+    Viewport const& viewport = setup_->target.viewports[0];
+    F const low(viewport.min_depth), high(viewport.max_depth);
+    F const clamped = select(z >= low, select(z <= high, z, high), low);
+    return I(I::Raw(clamped.raw)) & I(0x7fffffff);
+}
+
+// Fragments that fail against the depth target as waves before this one have left it, and triangles
+// without any other.
+void TriangleStream::drop_hidden()
+{
+    auto const* const codes = reinterpret_cast<std::int32_t const*>(setup_->target.depth->codes());
+    bool const or_equal = setup_->target.depth_stencil.depth_func == Comparison::LessEqual;
+    I const slack(or_equal ? 1 : 0); // codes of depths are whole numbers from 0 on
+    std::size_t kept = 0;
+    for (std::size_t q = 0; q < queued_; q += std::size_t(N)) {
+        std::size_t const n = std::min(std::size_t(N), queued_ - q);
+        Place const p = place(q, n);
+        F const z = floats(kZ, p) + (p.b1 * floats(kDz1, p) + p.b2 * floats(kDz2, p));
+        I const texel = (p.py + I(origin_y_)) * I(pitch_) + (p.px + I(origin_x_));
+        Mask<N> const pass = depth_code(z) < gather(codes, texel) + slack;
+        std::uint32_t const bits = pass.bits() & ((1u << n) - 1);
+        I const pixel = load_lanes<N>(queue_pixel_ + q), t = load_lanes<N>(queue_triangle_ + q);
+        store_lanes(compress(pixel, bits), queue_pixel_ + kept);
+        store_lanes(compress(t, bits), queue_triangle_ + kept);
+        compress(z, bits).store(queue_z_ + kept);
+        kept += std::size_t(std::popcount(bits));
+    }
+    if (kept == queued_) return;
+    queued_ = kept;
+    // Numbers that are left out are closed up.
+    std::int32_t last = -1, left = 0;
+    std::int32_t source[kTableRow];
+    for (std::size_t q = 0; q < queued_; q += std::size_t(N)) {
+        std::size_t const n = std::min(std::size_t(N), queued_ - q);
+        I const t = load_lanes<N>(queue_triangle_ + q);
+        I before = permute(t, max(I::iota() - I(1), I(0)));
+        before.raw[0] = last;
+        last = t.raw[n - 1];
+        std::uint32_t fresh = (t != before).bits() & ((1u << n) - 1);
+        for (; fresh; fresh &= fresh - 1) {
+            std::int32_t const number = t.raw[std::countr_zero(fresh)];
+            number_[number] = left;
+            source[left++] = number;
+        }
+        store_lanes(gather(number_, select(Mask<N>::first(int(n)), t, I(last))),
+                    queue_triangle_ + q);
+    }
+    if (std::size_t(left) == covered_) return;
+    covered_ = std::size_t(left);
+    for (int r = 0; r < kDepthRows; ++r)
+        for (std::size_t t = 0; t < covered_; t += std::size_t(N)) {
+            std::size_t const n = std::min(std::size_t(N), covered_ - t);
+            I const from = select(Mask<N>::first(int(n)), load_lanes<N>(source + t), I(0));
+            store_lanes(gather(row(r), from), row(r) + t);
+        }
+}
+
+void TriangleStream::tabulate_attributes()
+{
+    AssembledVertices const& vs = *vertices_;
+    for (std::size_t t = 0; t < covered_; t += std::size_t(N)) {
+        Mask<N> const live = Mask<N>::first(int(std::min(std::size_t(N), covered_ - t)));
+        I id[3];
+        for (int k = 0; k < 3; ++k) id[k] = select(live, load_lanes<N>(row(kCorner + k) + t), I(0));
+        store_differences(kW, vs.inverse_w.data(), id, t);
+        gather(vs.inverse_w.data(), id[1]).store(float_row(kW1) + t);
+        gather(vs.inverse_w.data(), id[2]).store(float_row(kW2) + t);
+        for (int k = 0; k < attributes_; ++k)
+            store_differences(kAttributes + 3 * k, vs.shaded + std::size_t(k + 4) * vs.stride, id,
+                              t);
+    }
+}
+
+// Fragments become inputs of the pixel shader.
+void TriangleStream::interpolate()
+{
+    for (std::size_t q = 0; q < queued_; q += std::size_t(N)) {
+        if (shaded_ + std::size_t(N) > kShade) shade();
+        std::size_t const n = std::min(std::size_t(N), queued_ - q);
+        Place const p = place(q, n);
+        auto const of = [&](int r) { return floats(r, p); };
+        F const z = F::load(queue_z_ + q);
+        F const w = F(1.0f) / (of(kW) + (p.b1 * of(kDw1) + p.b2 * of(kDw2)));
+        F const p1 = p.b1 * of(kW1) * w, p2 = p.b2 * of(kW2) * w;
+        std::size_t const at = shaded_;
+        for (int k = 0; k < attributes_; ++k) {
+            int const r = kAttributes + 3 * k;
+            float* const out = attribute_storage_.data() + std::size_t(k) * kShadeRow + at;
+            switch (modes_[std::size_t(k)]) {
+            case Interpolation::Constant:
+                of(r).store(out);
+                break;
+            case Interpolation::LinearNoperspective:
+            case Interpolation::LinearNoperspectiveCentroid:
+                (of(r) + (p.b1 * of(r + 1) + p.b2 * of(r + 2))).store(out);
+                break;
+            default:
+                (of(r) + (p1 * of(r + 1) + p2 * of(r + 2))).store(out);
+            }
+        }
+        I const X = p.px + I(origin_x_), Y = p.py + I(origin_y_);
+        store_lanes(X, pixel_x_ + at);
+        store_lanes(Y, pixel_y_ + at);
+        store_lanes(I(primitive_id_), id_ + at);
+        store_lanes(ints(kFront, p), front_ + at);
+        (F(X) + F(0.5f)).store(position_[0] + at);
+        (F(Y) + F(0.5f)).store(position_[1] + at);
+        z.store(position_[2] + at);
+        w.store(position_[3] + at);
+        shaded_ += n;
+    }
+}
+
+// Runs the pixel shader and sorts the results into tiles.
+void TriangleStream::shade()
+{
+    if (shaded_ == 0) return;
+    FragmentBatch batch{};
+    batch.count = shaded_;
+    for (int k = 0; k < 4; ++k) batch.position[k] = position_[k];
+    batch.attributes = attribute_rows_.data();
+    batch.primitive_id = id_;
+    batch.front_face = front_;
+    batch.sample_index = zeros_;
+    batch.coverage = ones_;
+    batch.color = color_rows_;
+    setup_->pixel_shader.run_uncounted(batch);
+
+    for (std::size_t q = 0; q < shaded_; q += std::size_t(N)) {
+        int const n = int(std::min(std::size_t(N), shaded_ - q));
+        I const depth = depth_code(F::load(position_[2] + q));
+        I const x = load_lanes<N>(pixel_x_ + q), y = load_lanes<N>(pixel_y_ + q);
+        I const shift(kTileShift);
+        I const texel = y * I(pitch_) + x;
+        I const tiles = (y >> shift) * I(tiles_.columns) + (x >> shift) + I(tiles_.number(0, 0));
+        I color[4];
+        if (wide_color_) {
+            for (int k = 0; k < 4; ++k) {
+                F const c = F::load(color_[k] + q);
+                color[k] = select(c == c, I(I::Raw(c.raw)), I(kCanonicalNan));
+            }
+        } else {
+            // R21 in double, which is exact.
+            typedef double D __attribute__((vector_size(8 * N)));
+            color[0] = I(0);
+            for (int k = 0; k < 4; ++k) {
+                F const c = F::load(color_[k] + q);
+                F const in = select(c > F(0.0f), select(c < F(1.0f), c, F(1.0f)), F(0.0f));
+                D const scaled = __builtin_convertvector(in.raw, D) * 255.0 + 0.5;
+                color[0] =
+                    color[0] | (I(I::Raw(__builtin_convertvector(scaled, I::Raw))) << I(8 * k));
+            }
+        }
+        std::uint32_t rest = n == N ? Mask<N>(true).bits() : (1u << n) - 1;
+        if (((tiles == I(tiles.raw[0])).bits() & rest) == rest) {
+            bins_->append(std::size_t(tiles.raw[0]), n, texel, depth, color);
+            continue;
+        }
+        while (rest) {
+            std::int32_t const t = tiles.raw[std::countr_zero(rest)];
+            std::uint32_t const here = (tiles == I(t)).bits() & rest;
+            I some[4];
+            for (int k = 0; k < (wide_color_ ? 4 : 1); ++k) some[k] = compress(color[k], here);
+            bins_->append(std::size_t(t), std::popcount(here), compress(texel, here),
+                          compress(depth, here), some);
+            rest &= ~here;
+        }
+    }
+    shaded_ = 0;
+}
+
+void TriangleStream::end()
+{
+    shade();
+}
+
+} // namespace tessemu
