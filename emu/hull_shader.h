@@ -112,7 +112,8 @@ public:
         for (std::size_t p = 0; p < b.patches; ++p) {
             for (std::size_t i = 0; i < std::size_t(n); ++i) {
                 std::uint32_t const id = b.vertices[p * std::size_t(n) + i];
-                std::copy_n(b.shaded_vertices + id * kIn, kIn, inputs.data() + i * kIn);
+                __builtin_memcpy(inputs.data() + i * kIn, b.shaded_vertices + id * kIn,
+                                 kIn * sizeof(float));
             }
             float* const out = b.control_points + p * std::size_t(points) * kOut;
             float* const registers = b.patch_constants + p * std::size_t(constants) * kConst;

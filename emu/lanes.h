@@ -57,6 +57,13 @@ template <int N> struct Mask {
         return b;
     }
 
+    /// Lane i is bit i.
+    static Mask of(std::uint32_t bits)
+    {
+        Raw bit;
+        for (int i = 0; i < N; ++i) bit[i] = 1 << i;
+        return Raw(((std::int32_t(bits) - Raw{}) & bit) != 0);
+    }
     /// The first n lanes.
     static Mask first(int n)
     {
@@ -184,13 +191,8 @@ template <int N> struct Lanes {
 #endif
 #if defined(__AVX__)
         if constexpr (N == 8) {
-            // Of equals both, of a number and none the number: an instruction gives its second.
-            __m256 const x(a.raw), y(b.raw), first = _mm256_min_ps(y, x),
-                                             second = _mm256_min_ps(x, y);
-            __m256 const number = _mm256_blendv_ps(x, y, _mm256_cmp_ps(x, x, _CMP_UNORD_Q));
-            return Lanes(Raw(_mm256_blendv_ps(_mm256_or_ps(first, second), number,
-                                              _mm256_cmp_ps(x, y, _CMP_UNORD_Q)))) +
-                   Lanes(detail::minus_zero);
+            __m256 const x(a.raw), y(b.raw);
+            return ordered(x, y, _mm256_or_ps(_mm256_min_ps(y, x), _mm256_min_ps(x, y)));
         }
 #endif
         Lanes const equal = Raw(Bits(a.raw) | Bits(b.raw));
@@ -207,12 +209,8 @@ template <int N> struct Lanes {
 #endif
 #if defined(__AVX__)
         if constexpr (N == 8) {
-            __m256 const x(a.raw), y(b.raw), first = _mm256_max_ps(y, x),
-                                             second = _mm256_max_ps(x, y);
-            __m256 const number = _mm256_blendv_ps(x, y, _mm256_cmp_ps(x, x, _CMP_UNORD_Q));
-            return Lanes(Raw(_mm256_blendv_ps(_mm256_and_ps(first, second), number,
-                                              _mm256_cmp_ps(x, y, _CMP_UNORD_Q)))) +
-                   Lanes(detail::minus_zero);
+            __m256 const x(a.raw), y(b.raw);
+            return ordered(x, y, _mm256_and_ps(_mm256_max_ps(y, x), _mm256_max_ps(x, y)));
         }
 #endif
         Lanes const equal = Raw(Bits(a.raw) & Bits(b.raw));
@@ -234,6 +232,18 @@ template <int N> struct Lanes {
         for (int i = 0; i < N; ++i) r.raw[i] = fused_multiply_add(a.raw[i], b.raw[i], c.raw[i]);
         return r;
     }
+
+private:
+#if defined(__AVX__)
+    // The instruction's minimum or maximum where both are numbers, else the one that is: it gives its
+    // second operand for equals and for none, so `both` are the results of either order as one.
+    static Lanes ordered(__m256 x, __m256 y, __m256 both)
+    {
+        __m256 const number = _mm256_blendv_ps(x, y, _mm256_cmp_ps(x, x, _CMP_UNORD_Q));
+        return Lanes(Raw(_mm256_blendv_ps(both, number, _mm256_cmp_ps(x, y, _CMP_UNORD_Q)))) +
+               Lanes(detail::minus_zero);
+    }
+#endif
 };
 
 template <int N> struct ScalarTraits<Lanes<N>> {

@@ -51,21 +51,31 @@ public:
         std::uint8_t* const marks = touched_.data() + first;
         for (; bits; bits &= bits - 1) mark(marks[std::countr_zero(bits)]);
     }
-    /// The elements of the lanes in `bits`, those that there are.
-    template <int N> void mark_each(IntLanes<N> index, std::uint32_t bits)
+    /// The elements of the lanes in `bits`, those that there are. Whether one was not marked yet.
+    template <int N> bool mark_each(IntLanes<N> index, std::uint32_t bits)
     {
         std::int32_t i[N];
         store_lanes<N>(index, i);
         std::uint8_t* const marks =
             touched_.data(); // which a store of a byte might change, by rule
         std::size_t const size = touched_.size();
+        bool fresh = false;
         auto const mark_lane = [&](int l) {
-            if (std::size_t(i[l]) < size) mark(marks[i[l]]);
+            if (std::size_t(i[l]) < size) fresh |= mark(marks[i[l]]);
         };
         if (bits == all_lanes<N>())
             for (int l = 0; l < N; ++l) mark_lane(l);
         else
             for (; bits; bits &= bits - 1) mark_lane(std::countr_zero(bits));
+        return fresh;
+    }
+    /// `count` elements from `first` on, of a run that shares none with others: its last is marked
+    /// where all are.
+    void mark_own_run(std::size_t first, std::size_t count)
+    {
+        std::uint8_t* const marks = touched_.data() + first;
+        if (!mark(marks[count - 1])) return;
+        for (std::size_t i = 0; i + 1 < count; ++i) mark(marks[i]);
     }
     /// When the threads are done.
     std::uint64_t count() const
@@ -78,10 +88,13 @@ public:
 private:
     // Most marks are there already: a read is cheap, a write would bounce between cores. A byte for
     // an element: bits of a word would have to be collected first, or locked one by one.
-    static void mark(std::uint8_t& m)
+    // Returns whether it was not there.
+    static bool mark(std::uint8_t& m)
     {
         std::atomic_ref<std::uint8_t> const shared(m);
-        if (!shared.load(std::memory_order_relaxed)) shared.store(1, std::memory_order_relaxed);
+        if (shared.load(std::memory_order_relaxed)) return false;
+        shared.store(1, std::memory_order_relaxed);
+        return true;
     }
 
     std::vector<std::uint8_t> touched_;
@@ -358,6 +371,16 @@ public:
         }
         if constexpr (kCounted) fetches_ += execution.active_lanes;
         return {T(v[0]), T(v[1]), T(v[2])};
+    }
+
+    /// The records, for what reads them at once; it counts its fetches, of whole records: how many,
+    /// and which of the first 32.
+    storage_of<T> const* memory() const requires(kCounted) { return memory_; }
+    void count(std::uint64_t fetches, std::uint32_t records) const requires(kCounted)
+    {
+        static_assert(kVectors == 1);
+        fetches_ += fetches;
+        touched_[0] |= records;
     }
 
     /// Fetches counted through this view.

@@ -18,15 +18,37 @@ std::uint64_t corner_signature(Topology const& topology, HalfEdge h)
     bool const boundary = topology.is_boundary(v);
     std::size_t const first = boundary ? 0 : topology.ring_index(h);
     std::uint64_t pattern = 0;
-    for (std::size_t j = 0; j < ring.size(); ++j) {
-        HalfEdge const g = ring[(first + j) % ring.size()];
-        bool const triangle = topology.mesh().face(topology.face_of(g)).size() == 3;
+    for (std::size_t j = 0, at = first; j < ring.size(); ++j) {
+        bool const triangle = topology.mesh().face(topology.face_of(ring[at])).size() == 3;
         pattern = std::rotl(pattern, 1) ^ (triangle ? 1 : 0);
+        if (++at == ring.size()) at = 0;
     }
     std::uint64_t const position = boundary ? topology.ring_index(h) : 0;
     return (pattern & 0xffffffffu) | (position << 32) | (std::uint64_t(ring.size()) << 44) |
            (std::uint64_t(boundary) << 62);
 }
+
+// Local numbers of a patch's first inputs, by a hash of the global ones.
+class LocalNumbers {
+public:
+    static constexpr int kMost = 64;
+
+    /// The place of v among the inputs, or that behind the last.
+    int find_or_add(std::vector<std::uint32_t> const& inputs, std::uint32_t v)
+    {
+        for (std::size_t at = v * 0x9e3779b1u >> (32 - kBits);; at = (at + 1) % slots_.size()) {
+            if (slots_[at] == 0) {
+                slots_[at] = std::uint8_t(inputs.size() + 1);
+                return int(inputs.size());
+            }
+            if (inputs[slots_[at] - 1u] == v) return slots_[at] - 1;
+        }
+    }
+
+private:
+    static constexpr int kBits = 7;
+    std::array<std::uint8_t, 1 << kBits> slots_{}; // number + 1
+};
 
 } // namespace
 
@@ -52,16 +74,19 @@ void find_neighbourhood(Topology const& topology, std::uint32_t face, Neighbourh
     out.rotation = best;
     out.inputs.clear();
     out.numbers.clear();
-    out.key.clear();
+    std::size_t longest = 1;
+    for (int i = 0; i < sides; ++i)
+        longest += 5 + 9 * topology.ring(topology.vertex_of(first + std::uint32_t(i))).size();
+    out.key.resize(longest);
+    char* key = out.key.data();
     auto const add_to_key = [&](std::uint32_t i) {
-        out.key.push_back(char(i));
-        out.key.push_back(char(i >> 8));
+        *key++ = char(i);
+        *key++ = char(i >> 8);
     };
+    LocalNumbers few;
     auto const number = [&](std::uint32_t v) {
-        constexpr std::size_t kFew = 40;
         auto const n = int(out.inputs.size());
-        if (out.inputs.size() < kFew)
-            return int(std::find(out.inputs.begin(), out.inputs.end(), v) - out.inputs.begin());
+        if (n < LocalNumbers::kMost) return few.find_or_add(out.inputs, v);
         if (out.numbers.empty())
             for (int i = 0; i < n; ++i) out.numbers.emplace(out.inputs[std::size_t(i)], i);
         return out.numbers.emplace(v, n).first->second;
@@ -72,7 +97,7 @@ void find_neighbourhood(Topology const& topology, std::uint32_t face, Neighbourh
         add_to_key(std::uint32_t(i));
         return i;
     };
-    out.key.push_back(char(sides));
+    *key++ = char(sides);
     for (int i = 0; i < sides; ++i) {
         HalfEdge const h = first + std::uint32_t((best + i) % sides);
         std::uint32_t const v = topology.vertex_of(h);
@@ -84,18 +109,21 @@ void find_neighbourhood(Topology const& topology, std::uint32_t face, Neighbourh
         c.position = c.boundary ? int(j) : 0;
         out.ring_shift[i] = c.boundary ? 0 : int((n - j) % n);
         c.faces.resize(n);
-        out.key.push_back(char(c.boundary));
+        *key++ = char(c.boundary);
         add_to_key(n);
         add_to_key(std::uint32_t(c.position));
+        std::uint32_t at = c.boundary ? 0 : j;
         for (std::uint32_t k = 0; k < n; ++k) {
-            HalfEdge g = ring[c.boundary ? k : (j + k) % n];
+            HalfEdge g = ring[at];
+            if (++at == n) at = 0;
             auto& f = c.faces[k];
             f.sides = int(mesh.face(topology.face_of(g)).size());
-            out.key.push_back(char(f.sides));
+            *key++ = char(f.sides);
             for (int s = 0; s < f.sides && s < 4; ++s, g = topology.next(g))
                 f.vertices[s] = local(topology.vertex_of(g));
         }
     }
+    out.key.resize(std::size_t(key - out.key.data()));
     if (out.inputs.size() > 0xffff)
         throw LimitError("inputs of a patch", out.inputs.size(), 0xffff);
 }

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "emu/hull_shader.h"
+#include "emu/table_rows.h"
 #include "shaders_cpp/cubic_edges.h"
 #include "shaders_cpp/pole_normals.h"
 #include "shaders_cpp/stencil_form/stencil_row.h"
@@ -61,12 +62,19 @@ template <int kSides, class Weight = float> struct SummedRows {
     float3<T> row(PatchInput patch, ControlPoints<ControlVertex<T>> const& in, int_of<T> row) const
     {
         using Int = int_of<T>;
-        std::int32_t const id = patch.primitive_id;
+        std::int32_t const first_order = patch.primitive_id * in.size();
         std::int32_t const rows = word<T>(patch, StencilPatchWords::kRows);
-        Int const first_weight = Int(word<T>(patch, StencilPatchWords::kWeights)) + row;
-        Int const mask = load<T>(zero_masks, Int(word<T>(patch, StencilPatchWords::kMasks)) + row);
+        std::int32_t const first_weight_ = word<T>(patch, StencilPatchWords::kWeights);
+        std::int32_t const first_mask = word<T>(patch, StencilPatchWords::kMasks);
+        if constexpr (std::same_as<T, FastLanes<lanes_of<T>>>)
+            if (auto const sum =
+                    sum_table_rows<lanes_of<T>>(in, {weights, first_weight_, rows, zero_masks,
+                                                     first_mask, order, first_order, row}))
+                return *sum;
+        Int const first_weight = Int(first_weight_) + row;
+        Int const mask = load<T>(zero_masks, Int(first_mask) + row);
         return stencil_row<T>(in.size(), [&](int k) {
-            std::int32_t const i = load<T>(order, id * in.size() + k);
+            std::int32_t const i = load<T>(order, first_order + k);
             return StencilTerm{
                 mask_of<T>(((mask >> Int(i)) & Int(1)) != Int(0)),
                 [=, this]() -> T { return load<T>(weights, first_weight + Int(i * rows)); },
