@@ -57,7 +57,7 @@ void load_classify_draw(benchmark::State& state)
         auto const mesh =
             std::make_shared<RefinedMesh const>(std::move(file.mesh), 0, catmull_clark_step);
         topology += since(t), t = Clock::now();
-        auto const patches = scheme.build(mesh, parameters, {});
+        auto const patches = scheme.build(mesh, parameters, {.threads = &threads});
         build += since(t), t = Clock::now();
         FrameSettings s;
         s.camera = frame_points(mesh->mesh().positions, {0.3f, 0.4f, 1}, 1);

@@ -103,7 +103,8 @@ int run(CheckRequest const& o)
     OutputFile* const picture = o.output.empty() ? nullptr : &out.add(o.output);
     if (picture) picture_format(*picture); // or refuses
     keep_inputs(out, o.surface);
-    Job job = prepare(o.surface, "check");
+    ThreadPool const threads(o.run.threads);
+    Job job = prepare(o.surface, "check", threads);
     set_picture(job, o.picture, o.surface);
     std::string const hint =
         join_hint(find_seams(job.surface.mesh->base_topology()), job.placement);
@@ -128,7 +129,6 @@ int run(CheckRequest const& o)
     if (mistaken)
         c.emplace_back("break_face",
                        std::int64_t(job.surface.mesh->base().file_face(mistake.face)) + 1);
-    ThreadPool const threads(o.run.threads);
     ProgressBar bar;
     s.progress = [&](std::size_t n, std::size_t all) { bar(n, all); };
     Stopwatch const clock;

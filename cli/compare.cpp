@@ -23,9 +23,9 @@ int run(CompareRequest const& o)
 {
     RunOutput out(o.run.json);
     out.keep(o.model.model);
-    Job job = prepare(o.model, o.shading, "compare");
-    job.header.config.emplace_back("level", std::int64_t(o.level));
     ThreadPool const threads(o.run.threads);
+    Job job = prepare(o.model, o.shading, "compare", threads);
+    job.header.config.emplace_back("level", std::int64_t(o.level));
     Stopwatch const clock;
     SurfaceComparison const c = compare_with_limit(job.patches(), job.frame, o.level, threads);
     if (c.to_limit.samples == 0 && c.from_limit.samples == 0)

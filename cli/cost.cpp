@@ -35,7 +35,8 @@ int run(CostRequest o)
     GpuModel const gpu = load_gpu_model(o.gpu);
     o.surface.vertex_cache = gpu.vertex_cache;
     keep_inputs(out, o.surface);
-    Job job = prepare(o.surface, "cost");
+    ThreadPool const threads(o.run.threads);
+    Job job = prepare(o.surface, "cost", threads);
     set_picture(job, o.picture, o.surface);
     FrameSettings const& f = job.frame;
     Config& c = job.header.config;
@@ -46,7 +47,6 @@ int run(CostRequest o)
         c.emplace_back("width", std::int64_t(f.width));
         c.emplace_back("height", std::int64_t(f.height));
     }
-    ThreadPool const threads(o.run.threads);
     Stopwatch const clock;
     std::vector<CommandStatistics> const commands =
         o.geometry_only ? visit_surface(job.patches(), f, threads, {}).commands

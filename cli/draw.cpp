@@ -120,14 +120,14 @@ void draw_cage(RefinedMesh const& refined, FrameSettings const& f, ThreadPool co
     draw_colored_mesh(control_mesh_picture(Topology(mesh)), f, 0.45f, threads, frame);
 }
 
-int run_error_view(DrawRequest const& o, Job& job, OutputFile* picture, RunOutput& out)
+int run_error_view(DrawRequest const& o, Job& job, ThreadPool const& threads, OutputFile* picture,
+                   RunOutput& out)
 {
     FrameSettings& f = job.frame;
     if (f.displacement || f.pose || f.direct3d10)
         throw Error("--view error compares the smooth surface at rest: it takes no --displace, "
                     "--animate or --direct3d 10");
     f.adaptive = {};
-    ThreadPool const threads(o.run.threads);
     Stopwatch const clock;
     EqualParameterErrors const e = equal_parameter_errors(job.patches(), f, o.level, threads);
     if (e.triangles.empty())
@@ -212,9 +212,11 @@ int run(DrawRequest const& o)
             throw Error("--view curvature is of the smooth surface: it takes no --displace");
     }
     keep_inputs(out, o.surface);
-    Job job = prepare(o.surface, "draw", cage ? refine_for_scheme : build_scheme);
+    ThreadPool const threads(o.run.threads);
+    Job job = prepare(o.surface, "draw", threads, cage ? refine_for_scheme : build_scheme);
     set_picture(job, o.picture, o.surface);
-    if (o.view.shows == ViewRequest::Shows::Error) return run_error_view(o, job, picture, out);
+    if (o.view.shows == ViewRequest::Shows::Error)
+        return run_error_view(o, job, threads, picture, out);
     FrameSettings& f = job.frame;
     f.view = o.view.view;
     f.cull = o.cull;
@@ -236,7 +238,6 @@ int run(DrawRequest const& o)
     c.emplace_back("camera_focal", double(f.camera.focal));
     if (job.poses.size() > 1) c.emplace_back("frames", std::int64_t(job.poses.size()));
 
-    ThreadPool const threads(o.run.threads);
     ProgressBar bar;
     Stopwatch const clock;
     std::string legend = in_words_of_levels(job.header.levels);

@@ -25,10 +25,10 @@ int run(ExportRequest const& o)
     OutputFile& file = out.add(o.output);
     mesh_format(file); // or refuses
     keep_inputs(out, o.surface);
-    Job job = prepare(o.surface, "export");
+    ThreadPool const threads(o.run.threads);
+    Job job = prepare(o.surface, "export", threads);
     job.header.config.emplace_back("weld", o.weld);
     MeshWriter writer(file, o.weld, job.placement, job.surface.mesh->base().file_faces);
-    ThreadPool const threads(o.run.threads);
     ProgressBar bar;
     Stopwatch const clock;
     std::size_t all = 0, done = 0;

@@ -38,10 +38,11 @@ int run(InfoRequest const& o)
         more.push_back(warning);
         print_warning(warning);
     };
+    ThreadPool const threads;
     SchemeOnMesh surface;
     std::vector<PatchCount> patches;
     try {
-        surface = build(model, o.model, build_scheme, tell);
+        surface = build(model, o.model, threads, build_scheme, tell);
         patches = surface.patches->patch_counts();
         parameters = surface.parameters;
     } catch (FormatError const& e) {
@@ -49,7 +50,7 @@ int run(InfoRequest const& o)
         ModelRequest as_it_is = o.model;
         as_it_is.build.subdivide = 0;
         as_it_is.build.set.clear();
-        surface = build(model, as_it_is, refine_for_scheme, {});
+        surface = build(model, as_it_is, threads, refine_for_scheme, {});
         tell(info.name + " cannot draw this mesh: " + e.what());
     }
     MeshSummary summary = summarize(surface.mesh->base_topology());

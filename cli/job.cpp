@@ -52,12 +52,14 @@ std::vector<std::string> without_folder(std::vector<std::string> warnings, std::
     return warnings;
 }
 
-SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make, WarningSink const& warn)
+SchemeOnMesh build(Model model, ModelRequest const& o, ThreadPool const& threads, MakeSurface& make,
+                   WarningSink const& warn)
 {
     BuildOptions options = o.build;
     options.placement = model.placement;
     options.lines = std::move(model.lines);
     options.warn = warn;
+    options.threads = &threads;
     bool const is_named = o.table_cache.has_value();
     std::filesystem::path const folder =
         is_named ? std::filesystem::path(*o.table_cache) : default_table_cache();
@@ -90,7 +92,7 @@ Config config_of(ModelRequest const& o, Parameters const& parameters)
 }
 
 Job open_job(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
-             MakeSurface& make)
+             ThreadPool const& threads, MakeSurface& make)
 {
     Job job;
     job.frame.machine = shading.machine();
@@ -105,7 +107,7 @@ Job open_job(ModelRequest const& o, ShadingRequest const& shading, std::string c
     job.header.inputs = {{model.name, model.sha256}};
     job.header.warnings = std::move(model.warnings);
     Stopwatch const build_clock;
-    job.surface = build(std::move(model), o, make);
+    job.surface = build(std::move(model), o, threads, make);
     job.build_seconds = build_clock.seconds();
     auto const& more = job.surface.warnings;
     job.header.warnings.insert(job.header.warnings.end(), more.begin(), more.end());
@@ -235,18 +237,20 @@ void keep_inputs(RunOutput const& out, SurfaceRequest const& o)
     out.keep(o.displace.heights.image);
 }
 
-Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb)
+Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
+            ThreadPool const& threads)
 {
-    Job job = open_job(o, shading, verb, build_scheme);
+    Job job = open_job(o, shading, verb, threads, build_scheme);
     job.header.config = config_of(o, job.surface.parameters);
     add_config(job.header.config, shading);
     return job;
 }
 
-Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make)
+Job prepare(SurfaceRequest const& o, std::string const& verb, ThreadPool const& threads,
+            MakeSurface& make)
 {
     check_request(o);
-    Job job = open_job(o.model, o.shading, verb, make);
+    Job job = open_job(o.model, o.shading, verb, threads, make);
     FrameSettings& f = job.frame;
     f.partitioning = o.partitioning.value_or(f.partitioning);
     f.tess_factor = float(o.tess.value_or(kDefaultTessFactor));

@@ -67,23 +67,25 @@ struct Job {
 using MakeSurface = SchemeOnMesh(Scheme const&, ControlMesh, BuildOptions const&);
 /// Prints warnings, or tells them to another. Errors about the mesh name the file, and the line
 /// where it is known.
-SchemeOnMesh build(Model model, ModelRequest const& o, MakeSurface& make = build_scheme,
-                   WarningSink const& warn = print_warning);
+SchemeOnMesh build(Model model, ModelRequest const& o, ThreadPool const& threads,
+                   MakeSurface& make = build_scheme, WarningSink const& warn = print_warning);
 /// "scheme", "subdivide", "join" where it is asked for, and each parameter by its name, "sort"
 /// where there is something to sort.
 Config config_of(ModelRequest const& o, Parameters const& parameters);
 /// The model, the machine, and a header without a configuration.
 Job open_job(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
-             MakeSurface& make);
+             ThreadPool const& threads, MakeSurface& make);
 /// The model and its settings for shading.
-Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb);
+Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
+            ThreadPool const& threads);
 /// "patches by their segments: 12 of 1 segment, 3 of 2 segments" and a line's end; empty where
 /// patches have no levels of their own.
 std::string in_words_of_levels(std::vector<std::uint64_t> const& levels);
 /// No result may replace the model or the height map.
 void keep_inputs(RunOutput const& out, SurfaceRequest const& o);
 /// With everything that verbs that tessellate share.
-Job prepare(SurfaceRequest const& o, std::string const& verb, MakeSurface& make = build_scheme);
+Job prepare(SurfaceRequest const& o, std::string const& verb, ThreadPool const& threads,
+            MakeSurface& make = build_scheme);
 /// Size, factors and camera, which shows the model, displaced, as it moves through all frames.
 void set_picture(Job& job, PictureRequest const& o, SurfaceRequest const& surface);
 void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double seconds);

@@ -60,12 +60,12 @@ inline constexpr double kDefaultTessFactor = 8;
 struct SurfaceRequest {
     ModelRequest model;
     ShadingRequest shading;
-    std::optional<double> tess; ///< by default kDefaultTessFactor
+    std::optional<double> tess;               ///< by default kDefaultTessFactor
     std::optional<Partitioning> partitioning; ///< by default fractional_odd
     DisplaceRequest displace;
     AnimateRequest animate;
     bool direct3d10 = false;
-    std::optional<RefinementPattern> pattern; ///< of that path; by default the tessellator's
+    std::optional<RefinementPattern> pattern;     ///< of that path; by default the tessellator's
     std::optional<VertexCacheModel> vertex_cache; ///< where the verb models one
 };
 

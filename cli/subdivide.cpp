@@ -61,10 +61,10 @@ int run(SubdivideRequest const& o)
     ModelRequest request = o.mesh;
     request.scheme = &find_scheme("gregory-stencil"); // whose masks these are
     request.build.progress = progress;
-    Job job = open_job(request, o.shading, "subdivide", take_steps);
+    ThreadPool const threads(o.run.threads);
+    Job job = open_job(request, o.shading, "subdivide", threads, take_steps);
     job.header.config = config_of(o, job.surface.parameters);
     RefinedMesh const& refined = *job.surface.mesh;
-    ThreadPool const threads(o.run.threads);
     Stopwatch const clock;
     DrawnMesh const drawn = drawn_mesh(refined, job.frame, threads);
     add_run(job.header, job, threads, clock.seconds());

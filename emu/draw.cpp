@@ -16,13 +16,16 @@ DrawMemory& DrawMemory::operator=(DrawMemory&&) noexcept = default;
 
 namespace {
 
-constexpr std::size_t kPatchesPerChunk = 8;
+constexpr std::size_t kPatchesPerChunk = 8, kPatchesPerCountedChunk = 32;
 constexpr std::size_t kPrimitivesPerChunk = 512; // of a draw without tessellation
 constexpr std::size_t kChunksPerWave = 128;
 // A draw that streams keeps fragments only: waves grow or shrink until they hold about so many. After
 // each the depth target hides what comes behind it, so waves are as small as threads allow.
 constexpr std::uint64_t kFragmentsPerWave = std::uint64_t(1) << 17;
 constexpr std::size_t kFewestChunksPerWave = 16, kChunksPerThread = 8, kMostChunksPerWave = 4096;
+// Where patches have few fragments, chunks grow before waves have more than so many: each costs a
+// set of counters and a list for each tile.
+constexpr std::size_t kManyChunks = 128, kMostPatchesPerChunk = 128;
 
 class Drawing {
 public:
@@ -62,19 +65,20 @@ private:
         stats_.pipeline.IAPrimitives += all;
         stats_.pipeline.IAVertices += primitives_.stream.size();
         run_vertex_shader(instance);
-        std::size_t const per_chunk = d_.hull_shader ? kPatchesPerChunk : kPrimitivesPerChunk;
-        std::size_t const chunks = (all + per_chunk - 1) / per_chunk;
         std::vector<Chunk>& wave = memory_.parts().wave;
         bool const streams = raster_ && raster_->streams() && !visit_ && !stream_output_;
         bool const counts_only =
             !raster_ && !visit_ && !stream_output_ && stages_.tessellates() && !d_.geometry_shader;
         std::size_t per_wave = streams ? fewest_chunks() : kChunksPerWave;
-        for (std::size_t first = 0; first < chunks;) {
-            std::size_t const n = std::min(per_wave, chunks - first);
+        std::size_t per_chunk = counts_only      ? kPatchesPerCountedChunk
+                                : d_.hull_shader ? kPatchesPerChunk
+                                                 : kPrimitivesPerChunk;
+        for (std::size_t first = 0; first < all;) {
+            std::size_t const n = std::min(per_wave, (all - first + per_chunk - 1) / per_chunk);
             if (wave.size() < n) wave.resize(n);
             threads_.parallel_for(n, [&](std::size_t i) {
                 DenormalMode const flush(DenormalMode::Flush); // fixed function between the stages
-                std::size_t const p = (first + i) * per_chunk;
+                std::size_t const p = first + i * per_chunk;
                 std::size_t const count = std::min(per_chunk, all - p);
                 float const* const vertices = shaded_vertices_.data();
                 if (streams)
@@ -91,12 +95,16 @@ private:
             });
             for (std::size_t i = 0; i < n; ++i) finish_geometry(wave[i]);
             std::span<Chunk> const done = std::span(wave).first(n);
-            if (streams)
+            first = std::min(first + n * per_chunk, all);
+            if (streams) {
                 per_wave = next_wave(n, raster_->merge(done, threads_));
-            else if (raster_)
+                for (; d_.hull_shader && per_wave > kManyChunks && per_chunk < kMostPatchesPerChunk;
+                     per_chunk *= 2)
+                    per_wave = (per_wave + 1) / 2;
+            } else if (raster_) {
                 raster_->rasterize(done, threads_);
-            first += n;
-            if (options_.progress) options_.progress(std::min(first * per_chunk, all), all);
+            }
+            if (options_.progress) options_.progress(first, all);
         }
     }
 

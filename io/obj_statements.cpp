@@ -13,7 +13,14 @@ namespace tessemu {
 
 namespace {
 
-constexpr std::string_view kBlanks = " \t\v\f";
+bool is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+bool is_line_end(char c)
+{
+    return c == '\r' || c == '\n';
+}
 
 } // namespace
 
@@ -52,21 +59,24 @@ bool Statements::take_line()
 {
     if (next_line_ > INT_MAX)
         throw FormatError(name_, 0, fmt::format("has more lines than {}, the limit", INT_MAX));
-    std::size_t const end = std::min(rest_.find_first_of("\r\n"), rest_.size());
+    std::size_t end = 0;
+    while (end < rest_.size() && !is_line_end(rest_[end])) ++end;
     std::string_view s = rest_.substr(0, end);
     bool const two = rest_.substr(end).starts_with("\r\n");
     rest_.remove_prefix(std::min(end + (two ? 2 : 1), rest_.size()));
     ++next_line_;
-    std::size_t const last = s.find_last_not_of(kBlanks);
-    bool const backslash = last != std::string_view::npos && s[last] == '\\';
-    s = s.substr(0, last == std::string_view::npos ? 0 : last + (backslash ? 0 : 1));
-    for (std::size_t at = 0; (at = s.find_first_not_of(kBlanks, at)) != s.npos;) {
+    while (!s.empty() && is_blank(s.back())) s.remove_suffix(1);
+    bool const backslash = s.ends_with('\\');
+    if (backslash) s.remove_suffix(1);
+    for (std::size_t at = 0;;) {
+        while (at < s.size() && is_blank(s[at])) ++at;
+        if (at == s.size()) return backslash;
         if (s[at] == '#') return false;
-        std::size_t const after = std::min(s.find_first_of(kBlanks, at), s.size());
+        std::size_t after = at;
+        while (after < s.size() && !is_blank(s[after])) ++after;
         words.push_back(s.substr(at, after - at));
         at = after;
     }
-    return backslash;
 }
 
 std::int64_t point_of(std::string_view s, std::size_t e)
@@ -85,7 +95,9 @@ std::int64_t point_of(std::string_view s, std::size_t e)
 
 std::size_t exponent_in(std::string_view s)
 {
-    return std::min(s.find_first_of("eE"), s.size());
+    std::size_t at = 0;
+    while (at < s.size() && s[at] != 'e' && s[at] != 'E') ++at;
+    return at;
 }
 
 bool is_tiny(std::string_view s)

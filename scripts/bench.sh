@@ -7,7 +7,7 @@ source "$(dirname "$0")/setup.sh"
 install_packages scripts/peer_packages.txt
 cmake --preset release -DTESSEMU_BUILD_BENCH=ON -DTESSEMU_BUILD_PEERS=ON >/dev/null
 cmake --build --preset release --target bench_draw bench_domain_shader bench_tessellator bench_memory \
-    bench_subdivision peer_llvmpipe peer_embree peer_opensubdiv peer_opensubdiv_subdivision >/dev/null
+    bench_schemes bench_subdivision peer_llvmpipe peer_embree peer_opensubdiv peer_opensubdiv_subdivision >/dev/null
 bin=build/release/bench
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
@@ -28,6 +28,9 @@ ours() {
              function rate(s) { sub("/s", "", s); if (s ~ /k$/) { sub("k", "", s); return s * 1000 } return s + 0 }'
     "$bin/bench_subdivision" --benchmark_filter=threads:1/ --benchmark_min_time=0.3 2>/dev/null |
         awk '/^subdivision/ { split($1, a, "[:/]"); print "our subdivision", a[3], a[5], $2 }'
+    "$bin/bench_schemes" --benchmark_min_time=0.3 2>/dev/null |
+        awk '/Mpoint/ { for (i = 2; i <= NF; ++i) if ($i ~ /^Mpoint/) { split($i, v, "="); print "our scheme", $1, 1, rate(v[2]) } }
+             function rate(s) { sub("/s", "", s); if (s ~ /m$/) { sub("m", "", s); return s / 1000 } if (s ~ /k$/) { sub("k", "", s); return s * 1000 } return s + 0 }'
     "$bin/bench_tessellator" --benchmark_min_time=0.3 2>/dev/null |
         awk '{ for (i = 2; i <= NF; ++i) if ($i ~ /^Mpoint/) { split($i, v, "="); sub("/s", "", v[2]); print "our tessellator", $1, 1, v[2] } }'
 }
@@ -55,6 +58,7 @@ awk '
         r = higher ? a / b : b / a
         printf "%-52s %10.2f %10.2f %-9s %7.2f\n", what, a, b, unit, r
     }
+    $2 == "scheme" && !($3 in known) { known[$3]; schemes[++all] = $3 }
     $1 == "our" { values["our " $2 " " $3 " " $4] = values["our " $2 " " $3 " " $4] " " $5; next }
     $1 == "bound" { values["bound " $2 " " $3] = values["bound " $2 " " $3] " " $4; next }
     { values[$1 " " $2 " " $3] = values[$1 " " $2 " " $3] " " $4 }
@@ -79,6 +83,11 @@ awk '
             row("subdivision to level " i " : its points alone", median("our subdivision " i " 1"), median("opensubdiv points " i), "ms", 0)
         }
         row("evaluation, N=17 : Embree rtcInterpolateN", median("our gregory_quad_uncounted 17 1"), median("embree evaluation 10"), "Meval/s", 1)
+        for (i = 1; i <= all; ++i) {
+            key = "our scheme " schemes[i] " 1"
+            row(schemes[i] ", points with normals : OpenSubdiv CpuEvaluator", median(key), median("opensubdiv evaluation 10"), "Mpoint/s", 1)
+            row(schemes[i] ", points with normals : Embree rtcInterpolateN", median(key), median("embree evaluation 10"), "Mpoint/s", 1)
+        }
         for (key in values) if (key ~ /our tessellator/) { split(key, k, " "); printf "%-52s %10.2f %10s Mpoint/s\n", "tessellator " k[3], median(key), "" }
     }' "$log"
 "$bin/bench_memory" || true

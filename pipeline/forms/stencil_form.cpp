@@ -110,53 +110,68 @@ std::vector<PatchCount> StencilForm::patch_counts() const
     return out;
 }
 
-void StencilForm::make_tables(std::vector<TypeAhead> const& ahead)
-{
-    struct Patch {
-        std::uint32_t face, type;
-    };
-    Topology const& topology = mesh().topology();
-    std::vector<char> const hidden = hidden_faces(mesh(), warnings_);
-    poles_ = find_poles(topology);
-    std::unordered_map<std::string, std::uint32_t> type_ids;
-    std::unordered_map<std::string, Table> ready;
-    std::vector<Patch> patches;
-    Neighbourhood n;
-    for (TypeAhead const& a : ahead) {
-        ControlMesh const cage = one_ring_cage(a.type);
-        find_neighbourhood(Topology(cage), 0, n);
-        ready.emplace(n.key, add_table(a.kind, n));
+/// Neighbourhoods of faces, a block of them at a time on all threads.
+class Neighbourhoods {
+public:
+    /// \param find  (face, out): thread by thread
+    Neighbourhoods(ThreadPool const* threads,
+                   std::function<void(std::uint32_t, Neighbourhood&)> find)
+        : threads_(threads && threads->threads() > 1 ? threads : nullptr),
+          find_(std::move(find)),
+          block_(threads_ ? kBlock : 1)
+    {
     }
-    for (std::uint32_t f = 0; f < mesh().mesh().faces(); ++f) {
-        if (hidden[f]) continue;
-        find_neighbourhood(topology, f, n);
-        arrange(f, n);
-        auto const [it, fresh] = type_ids.try_emplace(n.key, std::uint32_t(types_.size()));
-        if (fresh) {
-            std::size_t const kind = kind_of(f);
-            auto const made = ready.find(n.key);
-            types_.push_back(
-                {made != ready.end() ? made->second : add_table(kind, n), kind, valence_type(n)});
+
+    /// take(i, neighbourhood of face(i)) for i from 0 to n - 1 in this order.
+    template <class Face, class Take>
+    void for_each(std::size_t n, Face const& face, Take const& take)
+    {
+        for (std::size_t first = 0; first < n; first += block_.size()) {
+            std::size_t const count = std::min(block_.size(), n - first);
+            auto const find_item = [&](std::size_t item) {
+                for (std::size_t i = item * kItem; i < std::min(count, (item + 1) * kItem); ++i)
+                    find_(face(first + i), block_[i]);
+            };
+            if (threads_)
+                threads_->parallel_for((count + kItem - 1) / kItem, find_item);
+            else
+                find_item(0);
+            for (std::size_t i = 0; i < count; ++i) take(first + i, block_[i]);
         }
-        ++types_[it->second].patches;
-        patches.push_back({f, it->second});
     }
+
+private:
+    static constexpr std::size_t kItem = 64, kBlock = 16 * kItem; // of a megabyte or so
+    ThreadPool const* threads_;
+    std::function<void(std::uint32_t, Neighbourhood&)> find_;
+    std::vector<Neighbourhood> block_;
+};
+
+void StencilForm::make_tables(ThreadPool const* threads, std::vector<TypeAhead> const& ahead)
+{
+    poles_ = find_poles(mesh().topology());
+    Neighbourhoods neighbourhoods(threads, [this](std::uint32_t f, Neighbourhood& n) {
+        find_neighbourhood(mesh().topology(), f, n);
+        arrange(f, n);
+    });
+    std::vector<Patch> patches = find_types(neighbourhoods, ahead);
     std::stable_sort(patches.begin(), patches.end(), [&](Patch const& a, Patch const& b) {
         Type const &s = types_[a.type], &t = types_[b.type];
         return std::tuple(s.kind, s.inputs(), a.type) < std::tuple(t.kind, t.inputs(), b.type);
     });
+    reserve_groups();
     std::size_t wide = 0;
     int most = 0;
     std::uint32_t first = std::numeric_limits<std::uint32_t>::max();
     Type* last = nullptr; // of wide patches: rows are large, and live as long as their type's turn
-    for (Patch const& p : patches) {
+    auto const face = [&](std::size_t i) { return patches[i].face; };
+    neighbourhoods.for_each(patches.size(), face, [&](std::size_t i, Neighbourhood const& n) {
+        Patch const& p = patches[i];
         Type& t = types_[p.type];
-        find_neighbourhood(topology, p.face, n);
-        arrange(p.face, n);
         added(t.kind, p.face, n);
         if (!t.wide()) {
             add_patch(t, n, p.face);
-            continue;
+            return;
         }
         if (last != &t) {
             if (last) last->stencils.rows = {};
@@ -166,13 +181,68 @@ void StencilForm::make_tables(std::vector<TypeAhead> const& ahead)
         add_wide_patch(t, n, p.face);
         ++wide, most = std::max(most, t.inputs());
         first = std::min(first, mesh().base().file_face(mesh().place(p.face).face));
-    }
+    });
     if (last) last->stencils.rows = {};
     if (wide)
         draws_another_way(another_way_of(
             wide, first,
             "more than " + std::to_string(kMaxControlPoints) + " inputs (up to " +
                 std::to_string(most) + "): a dispatch sums their control points before the draw"));
+}
+
+// Numbers the types in the order of their first faces.
+std::vector<StencilForm::Patch> StencilForm::find_types(Neighbourhoods& neighbourhoods,
+                                                        std::vector<TypeAhead> const& ahead)
+{
+    std::vector<std::uint32_t> faces;
+    faces.reserve(mesh().mesh().faces());
+    std::vector<char> const hidden = hidden_faces(mesh(), warnings_);
+    for (std::uint32_t f = 0; f < mesh().mesh().faces(); ++f)
+        if (!hidden[f]) faces.push_back(f);
+    std::unordered_map<std::string, Table> ready;
+    for (TypeAhead const& a : ahead) {
+        ControlMesh const cage = one_ring_cage(a.type);
+        Neighbourhood n;
+        find_neighbourhood(Topology(cage), 0, n);
+        ready.emplace(n.key, add_table(a.kind, n));
+    }
+    std::unordered_map<std::string, std::uint32_t> ids;
+    std::vector<Patch> patches;
+    patches.reserve(faces.size());
+    auto const face = [&](std::size_t i) { return faces[i]; };
+    neighbourhoods.for_each(faces.size(), face, [&](std::size_t i, Neighbourhood const& n) {
+        auto const [it, fresh] = ids.try_emplace(n.key, std::uint32_t(types_.size()));
+        if (fresh) {
+            std::size_t const kind = kind_of(faces[i]);
+            auto const made = ready.find(n.key);
+            types_.push_back({made != ready.end() ? made->second : add_table(kind, n), kind,
+                              n.sides, valence_type(n)});
+        }
+        ++types_[it->second].patches;
+        patches.push_back({faces[i], it->second});
+    });
+    return patches;
+}
+
+// Groups of all patches that are not wide, in order, with room for them.
+void StencilForm::reserve_groups()
+{
+    std::map<std::pair<std::size_t, int>, std::vector<Type const*>> groups;
+    for (Type const& t : types_)
+        if (!t.wide()) groups[{t.kind, t.inputs()}].push_back(&t);
+    for (auto const& [of, types] : groups) {
+        Group g{of.first, of.second, {}, {}, {}, {}};
+        std::size_t patches = 0, words = 0;
+        for (Type const* t : types) {
+            patches += t->patches;
+            words += t->patches * std::size_t(StencilPatchWords::count(t->sides));
+        }
+        g.patches.reserve(patches);
+        g.indices.reserve(patches * std::size_t(g.inputs));
+        g.order.reserve(patches * std::size_t(g.inputs));
+        g.words.reserve(words);
+        tables_.groups.push_back(std::move(g));
+    }
 }
 
 StencilForm::Table StencilForm::add_table(std::size_t kind, Neighbourhood const& n)
@@ -201,14 +271,16 @@ namespace {
 constexpr std::size_t kMostTerms = std::size_t(1) << 28; // 2 GiB of tables
 
 // Inputs in ascending global vertex id, in which sums run.
-template <class Index> std::vector<Index> ascending(Neighbourhood const& n)
+template <class Index> void append_ascending(Neighbourhood const& n, std::vector<Index>& out)
 {
-    std::vector<Index> order(n.inputs.size());
-    std::iota(order.begin(), order.end(), Index(0));
-    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
-        return std::pair(n.inputs[a], a) < std::pair(n.inputs[b], b);
-    });
-    return order;
+    std::array<std::uint64_t, kMaxControlPoints> few;
+    std::vector<std::uint64_t> many;
+    std::size_t const count = n.inputs.size();
+    if (count > few.size()) many.resize(count);
+    std::uint64_t* const keys = count > few.size() ? many.data() : few.data();
+    for (std::size_t i = 0; i < count; ++i) keys[i] = std::uint64_t(n.inputs[i]) << 32 | i;
+    std::sort(keys, keys + count);
+    for (std::size_t i = 0; i < count; ++i) out.push_back(Index(keys[i]));
 }
 
 } // namespace
@@ -233,14 +305,12 @@ std::uint32_t StencilForm::corner_row(Neighbourhood const& n, int corner, int ro
 
 void StencilForm::add_patch(Type const& t, Neighbourhood const& n, std::uint32_t face)
 {
-    std::vector<Group>& groups = tables_.groups;
-    if (groups.empty() || groups.back().kind != t.kind || groups.back().inputs != t.inputs())
-        groups.push_back({t.kind, t.inputs(), {}, {}, {}, {}});
-    Group& g = groups.back();
+    Group& g = *std::find_if(tables_.groups.begin(), tables_.groups.end(), [&](Group const& of) {
+        return of.kind == t.kind && of.inputs == t.inputs();
+    });
     g.patches.push_back(mesh().place(face, n.rotation));
     g.indices.insert(g.indices.end(), n.inputs.begin(), n.inputs.end());
-    std::vector<std::uint8_t> const order = ascending<std::uint8_t>(n);
-    g.order.insert(g.order.end(), order.begin(), order.end());
+    append_ascending(n, g.order);
     g.words.insert(g.words.end(), {std::uint32_t(t.first_weight), std::uint32_t(t.first_mask),
                                    std::uint32_t(t.rows), edge_bits(n)});
     for (int i = 0; i < n.sides; ++i)
@@ -269,7 +339,8 @@ void StencilForm::add_wide_patch(Type const& t, Neighbourhood const& n, std::uin
     for (int i = 0; i < n.sides; ++i)
         g.words.push_back(corner_row(n, i, s.control_points + 4 * n.sides + 2 * i));
     for (double c : s.constants) g.constants.push_back(float(c));
-    std::vector<std::uint32_t> const order = ascending<std::uint32_t>(n);
+    std::vector<std::uint32_t> order;
+    append_ascending(n, order);
     auto const add_row = [&](StencilRow const& row) {
         for (std::uint32_t i : order)
             if (float const w = float(row[i]); w != 0) {

@@ -33,6 +33,8 @@ struct GatheredBuffers {
 };
 using RowBuffers = std::variant<StencilBuffers, GatheredBuffers>;
 
+class Neighbourhoods; // stencil_form.cpp
+
 class StencilForm : public PatchMesh {
 public:
     /// Edges at a vertex that a scheme of this form takes: the rows of a pole's patches have some
@@ -94,10 +96,11 @@ protected:
     /// Makes the tables: the last line of the scheme's constructor. Throws LimitError for wide
     /// patches whose rows have more than 2^28 terms, as around several vertices of 2,000 edges.
     ///
-    /// \param ahead  of LOOP10's types; tables have other places then and the same rows
+    /// \param threads  that look at neighbourhoods; none: the calling thread alone
+    /// \param ahead    of LOOP10's types; tables have other places then and the same rows
     /// \cost  a table for each connectivity type, linear in the faces, and in the terms of wide
     ///        patches' rows: some 28 times the square of a pole's valence
-    void make_tables(std::vector<TypeAhead> const& ahead = {});
+    void make_tables(ThreadPool const* threads, std::vector<TypeAhead> const& ahead = {});
 
     /// What the scheme itself has to say, beside the form.
     void warn(std::string warning) { warnings_.push_back(std::move(warning)); }
@@ -113,7 +116,7 @@ protected:
     // What a scheme says. Kinds are numbers in the constructor's list.
     virtual std::size_t kind_of(std::uint32_t face) const = 0;
     /// Turns a face's neighbourhood, or numbers its inputs, as the kind's shaders know them; the
-    /// same for all faces of a connectivity type.
+    /// same for all faces of a connectivity type. Called on several threads at once.
     virtual void arrange(std::uint32_t, Neighbourhood&) const {}
     /// Hears of each patch when it is added to the tables, in the order in which its kind is drawn.
     virtual void added(std::size_t, std::uint32_t, Neighbourhood const&) {}
@@ -142,12 +145,19 @@ private:
     };
     struct Type : Table {
         std::size_t kind;
+        int sides;
         std::optional<ValenceType> valences;
         std::size_t patches = 0;
 
         int inputs() const { return stencils.inputs; }
         bool wide() const { return inputs() > kMaxControlPoints; }
     };
+    struct Patch {
+        std::uint32_t face, type;
+    };
+    std::vector<Patch> find_types(Neighbourhoods& neighbourhoods,
+                                  std::vector<TypeAhead> const& ahead);
+    void reserve_groups();
     Table add_table(std::size_t kind, Neighbourhood const& n);
     void add_patch(Type const& t, Neighbourhood const& n, std::uint32_t face);
     void add_wide_patch(Type const& t, Neighbourhood const& n, std::uint32_t face);

@@ -28,27 +28,77 @@ std::uint64_t corner_signature(Topology const& topology, HalfEdge h)
            (std::uint64_t(boundary) << 62);
 }
 
-// Local numbers of a patch's first inputs, by a hash of the global ones.
+// Numbers a patch's inputs in the order in which they come.
 class LocalNumbers {
 public:
-    static constexpr int kMost = 64;
-
-    /// The place of v among the inputs, or that behind the last.
-    int find_or_add(std::vector<std::uint32_t> const& inputs, std::uint32_t v)
+    explicit LocalNumbers(Neighbourhood& out) : out_(out)
     {
+        out.inputs.clear();
+        out.numbers.clear();
+    }
+    /// The inputs are the patch's.
+    void finish()
+    {
+        if (out_.inputs.empty()) out_.inputs.assign(few_.begin(), few_.begin() + count_);
+    }
+
+    int of(std::uint32_t v)
+    {
+        if (count_ >= kFew) return of_many(v);
         for (std::size_t at = v * 0x9e3779b1u >> (32 - kBits);; at = (at + 1) % slots_.size()) {
             if (slots_[at] == 0) {
-                slots_[at] = std::uint8_t(inputs.size() + 1);
-                return int(inputs.size());
+                few_[std::size_t(count_++)] = v;
+                slots_[at] = std::uint16_t(count_);
+                return count_ - 1;
             }
-            if (inputs[slots_[at] - 1u] == v) return slots_[at] - 1;
+            if (few_[slots_[at] - 1u] == v) return slots_[at] - 1;
         }
     }
 
 private:
-    static constexpr int kBits = 7;
-    std::array<std::uint8_t, 1 << kBits> slots_{}; // number + 1
+    static constexpr int kFew = 64, kBits = 7;
+
+    int of_many(std::uint32_t v)
+    {
+        if (out_.inputs.empty()) {
+            out_.inputs.assign(few_.begin(), few_.end());
+            for (int i = 0; i < kFew; ++i) out_.numbers.emplace(few_[std::size_t(i)], i);
+        }
+        auto const [at, fresh] = out_.numbers.emplace(v, int(out_.inputs.size()));
+        if (fresh) out_.inputs.push_back(v);
+        return at->second;
+    }
+
+    Neighbourhood& out_;
+    int count_ = 0; // up to kFew
+    std::array<std::uint32_t, kFew> few_;
+    std::array<std::uint16_t, 1 << kBits> slots_{}; // by a hash: number + 1
 };
+
+// What is equal for neighbourhoods of one type: all but the inputs.
+void make_key(Neighbourhood& n)
+{
+    std::size_t longest = 1;
+    for (int i = 0; i < n.sides; ++i) longest += 5 + 9 * n.corner[i].faces.size();
+    n.key.resize(longest);
+    char* key = n.key.data();
+    auto const add = [&](int i) {
+        *key++ = char(i);
+        *key++ = char(i >> 8);
+    };
+    *key++ = char(n.sides);
+    for (int i = 0; i < n.sides; ++i) {
+        CornerNeighbourhood const& c = n.corner[i];
+        *key++ = char(c.boundary);
+        add(int(c.faces.size()));
+        add(c.position);
+        for (CornerNeighbourhood::Face const& f : c.faces) {
+            *key++ = char(f.sides);
+            for (int s = 0; s < std::min(f.sides, 4); ++s) add(f.vertices[s]);
+        }
+    }
+    n.key.resize(std::size_t(key - n.key.data()));
+}
 
 } // namespace
 
@@ -72,32 +122,7 @@ void find_neighbourhood(Topology const& topology, std::uint32_t face, Neighbourh
 
     out.sides = sides;
     out.rotation = best;
-    out.inputs.clear();
-    out.numbers.clear();
-    std::size_t longest = 1;
-    for (int i = 0; i < sides; ++i)
-        longest += 5 + 9 * topology.ring(topology.vertex_of(first + std::uint32_t(i))).size();
-    out.key.resize(longest);
-    char* key = out.key.data();
-    auto const add_to_key = [&](std::uint32_t i) {
-        *key++ = char(i);
-        *key++ = char(i >> 8);
-    };
-    LocalNumbers few;
-    auto const number = [&](std::uint32_t v) {
-        auto const n = int(out.inputs.size());
-        if (n < LocalNumbers::kMost) return few.find_or_add(out.inputs, v);
-        if (out.numbers.empty())
-            for (int i = 0; i < n; ++i) out.numbers.emplace(out.inputs[std::size_t(i)], i);
-        return out.numbers.emplace(v, n).first->second;
-    };
-    auto const local = [&](std::uint32_t v) {
-        int const i = number(v);
-        if (i == int(out.inputs.size())) out.inputs.push_back(v);
-        add_to_key(std::uint32_t(i));
-        return i;
-    };
-    *key++ = char(sides);
+    LocalNumbers local(out);
     for (int i = 0; i < sides; ++i) {
         HalfEdge const h = first + std::uint32_t((best + i) % sides);
         std::uint32_t const v = topology.vertex_of(h);
@@ -109,21 +134,22 @@ void find_neighbourhood(Topology const& topology, std::uint32_t face, Neighbourh
         c.position = c.boundary ? int(j) : 0;
         out.ring_shift[i] = c.boundary ? 0 : int((n - j) % n);
         c.faces.resize(n);
-        *key++ = char(c.boundary);
-        add_to_key(n);
-        add_to_key(std::uint32_t(c.position));
         std::uint32_t at = c.boundary ? 0 : j;
-        for (std::uint32_t k = 0; k < n; ++k) {
-            HalfEdge g = ring[at];
+        for (CornerNeighbourhood::Face& f : c.faces) {
+            HalfEdge const corner = ring[at];
             if (++at == n) at = 0;
-            auto& f = c.faces[k];
-            f.sides = int(mesh.face(topology.face_of(g)).size());
-            *key++ = char(f.sides);
-            for (int s = 0; s < f.sides && s < 4; ++s, g = topology.next(g))
-                f.vertices[s] = local(topology.vertex_of(g));
+            std::uint32_t const g = topology.face_of(corner), begin = mesh.face_start[g],
+                                end = mesh.face_start[g + 1];
+            f.sides = int(end - begin);
+            HalfEdge next = corner;
+            for (int s = 0; s < f.sides && s < 4; ++s) {
+                f.vertices[s] = local.of(mesh.face_vertices[next]);
+                if (++next == end) next = begin;
+            }
         }
     }
-    out.key.resize(std::size_t(key - out.key.data()));
+    local.finish();
+    make_key(out);
     if (out.inputs.size() > 0xffff)
         throw LimitError("inputs of a patch", out.inputs.size(), 0xffff);
 }

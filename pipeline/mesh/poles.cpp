@@ -40,8 +40,12 @@ struct Ring {
     double reach = 0;   // squared distance to the farthest point
     bool boundary = false;
 
-    Ring(Topology const& t, std::uint32_t v) : boundary(t.is_boundary(v))
+    /// Becomes that of another vertex, in the memory that is there.
+    void read(Topology const& t, std::uint32_t v)
     {
+        d.clear(), c.clear();
+        reach = 0;
+        boundary = t.is_boundary(v);
         ControlMesh const& mesh = t.mesh();
         Vec const origin(mesh.positions[v]);
         for (HalfEdge h : t.ring(v)) {
@@ -155,8 +159,12 @@ Poles find_poles(Topology const& t)
     ControlMesh const& mesh = t.mesh();
     Circles circles;
     std::vector<std::uint32_t> poles;
-    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v)
-        if (!t.ring(v).empty() && is_pole(Ring(t, v), circles)) poles.push_back(v);
+    Ring ring;
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+        if (t.ring(v).empty()) continue;
+        ring.read(t, v);
+        if (is_pole(ring, circles)) poles.push_back(v);
+    }
     Poles out;
     if (poles.empty()) return out;
 

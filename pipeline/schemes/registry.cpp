@@ -446,8 +446,8 @@ SchemeOnMesh build_scheme(Scheme const& scheme, ControlMesh mesh, BuildOptions c
 {
     SchemeInfo const info = scheme.info();
     SchemeOnMesh out = refine(info, &scheme, std::move(mesh), options, true);
-    out.patches =
-        scheme.build(out.mesh, out.parameters, {options.tables, options.warn, options.progress});
+    out.patches = scheme.build(out.mesh, out.parameters,
+                               {options.tables, options.warn, options.progress, options.threads});
     std::vector<std::string> more;
     if (auto const other = out.patches->another_way()) {
         if (options.strict)

@@ -92,6 +92,7 @@ struct BuildServices {
     BasisTableStore* tables = nullptr; ///< where basis-function tables are kept
     WarningSink warn = {};             ///< hears what is worth telling before the build is done
     RefinementProgress progress = {};
+    ThreadPool const* threads = nullptr; ///< that help; without any the calling thread builds alone
 };
 
 class Scheme {
@@ -157,7 +158,8 @@ struct BuildOptions {
     /// Hears the warnings, those before an error before it is thrown.
     WarningSink warn = {};
     RefinementProgress progress = {};
-    BasisTableStore* tables = nullptr; ///< for schemes that use some
+    BasisTableStore* tables = nullptr;   ///< for schemes that use some
+    ThreadPool const* threads = nullptr; ///< that help to build; none: the calling thread alone
 };
 
 /// Joins vertices if asked to, makes the mesh a manifold, checks it, sorts and refines it as

@@ -15,11 +15,11 @@ enum Kind { kRegularQuad, kAccQuad };
 
 class AccPatches final : public StencilForm {
 public:
-    explicit AccPatches(std::shared_ptr<RefinedMesh const> refined)
+    AccPatches(std::shared_ptr<RefinedMesh const> refined, ThreadPool const* threads)
         : StencilForm(std::move(refined), {{"regular quad", PatchClass::RegularQuad},
                                            {"ACC quad", PatchClass::IrregularQuad}})
     {
-        make_tables();
+        make_tables(threads);
     }
 
 private:
@@ -59,9 +59,9 @@ public:
         return info;
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh, Parameters const&,
-                                     BuildServices const&) const override
+                                     BuildServices const& services) const override
     {
-        return std::make_unique<AccPatches>(std::move(mesh));
+        return std::make_unique<AccPatches>(std::move(mesh), services.threads);
     }
 };
 

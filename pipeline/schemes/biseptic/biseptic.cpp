@@ -27,7 +27,8 @@ StencilRow row_of(std::vector<std::pair<int, double>> terms, int inputs)
 
 class BisepticPatches final : public IsolatedNets {
 public:
-    BisepticPatches(std::shared_ptr<RefinedMesh const> mesh, Parameters const& parameters)
+    BisepticPatches(std::shared_ptr<RefinedMesh const> mesh, Parameters const& parameters,
+                    ThreadPool const* threads)
         : IsolatedNets(std::move(mesh),
                        {"biseptic quad", "of one curvature at the vertex", kMaxBisepticValence,
                         "the derived basis is of vertices inside",
@@ -37,7 +38,7 @@ public:
                        parameters)
     {
         for (int n : valences()) bases_.emplace_back(n);
-        make_nets();
+        make_nets(threads);
     }
 
 private:
@@ -131,9 +132,9 @@ public:
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
                                      Parameters const& parameters,
-                                     BuildServices const&) const override
+                                     BuildServices const& services) const override
     {
-        return std::make_unique<BisepticPatches>(std::move(mesh), parameters);
+        return std::make_unique<BisepticPatches>(std::move(mesh), parameters, services.threads);
     }
 };
 

@@ -15,7 +15,8 @@ enum Kind { kRegularQuad, kGregoryQuad, kGregoryTriangle };
 
 class GregoryStencils final : public StencilForm {
 public:
-    GregoryStencils(std::shared_ptr<RefinedMesh const> refined, Parameters const& parameters)
+    GregoryStencils(std::shared_ptr<RefinedMesh const> refined, Parameters const& parameters,
+                    ThreadPool const* threads)
         : StencilForm(std::move(refined), {{"regular quad", PatchClass::RegularQuad},
                                            {"Gregory quad", PatchClass::IrregularQuad},
                                            {"Gregory triangle", PatchClass::Triangle}})
@@ -27,7 +28,7 @@ public:
         if (parameters.word("matrices") == "ahead")
             for (ValenceType const& t : isolated_valence_types())
                 ahead.push_back({t.inputs() == 16 ? kRegularQuad : kGregoryQuad, t});
-        make_tables(ahead);
+        make_tables(threads, ahead);
     }
 
 private:
@@ -82,9 +83,9 @@ public:
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
                                      Parameters const& parameters,
-                                     BuildServices const&) const override
+                                     BuildServices const& services) const override
     {
-        return std::make_unique<GregoryStencils>(std::move(mesh), parameters);
+        return std::make_unique<GregoryStencils>(std::move(mesh), parameters, services.threads);
     }
 };
 

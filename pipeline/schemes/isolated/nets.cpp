@@ -130,9 +130,9 @@ IsolatedNets::IsolatedNets(std::shared_ptr<RefinedMesh const> refined, Net net,
     gregory_.smooth_corners = mesh().base().smooth_corners();
 }
 
-void IsolatedNets::make_nets()
+void IsolatedNets::make_nets(ThreadPool const* threads)
 {
-    make_tables();
+    make_tables(threads);
     say_gregory(at_boundary_, "at the boundary", net_.boundary);
     say_gregory(at_two_edges_, "at a vertex of 2 edges", net_.valence);
     say_gregory(at_many_edges_,

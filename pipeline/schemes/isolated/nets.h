@@ -37,7 +37,7 @@ protected:
     IsolatedNets(std::shared_ptr<RefinedMesh const> mesh, Net net, Parameters const& parameters);
     /// Makes the tables and says what is drawn in another way: called by the scheme's constructor,
     /// as make_tables() is.
-    void make_nets();
+    void make_nets(ThreadPool const* threads);
 
     /// Valences of extraordinary vertices with nets, ascending: kinds from kFirstNet on.
     std::vector<int> const& valences() const { return valences_; }

@@ -56,7 +56,8 @@ struct Valence {
 
 class StamPatches final : public IsolatedNets {
 public:
-    StamPatches(std::shared_ptr<RefinedMesh const> refined, Parameters const& parameters)
+    StamPatches(std::shared_ptr<RefinedMesh const> refined, Parameters const& parameters,
+                ThreadPool const* threads)
         : IsolatedNets(std::move(refined),
                        {"Stam quad", "exact", int(kMostEdges),
                         "the paper says nothing of boundaries in its tessellation stage",
@@ -64,7 +65,7 @@ public:
                        parameters)
     {
         for (int n : valences()) valences_.emplace_back(n);
-        make_nets();
+        make_nets(threads);
         if (has_shared_edges())
             find_owners();
         else
@@ -205,9 +206,9 @@ public:
     }
     std::unique_ptr<PatchMesh> build(std::shared_ptr<RefinedMesh const> mesh,
                                      Parameters const& parameters,
-                                     BuildServices const&) const override
+                                     BuildServices const& services) const override
     {
-        return std::make_unique<StamPatches>(std::move(mesh), parameters);
+        return std::make_unique<StamPatches>(std::move(mesh), parameters, services.threads);
     }
 };
 
