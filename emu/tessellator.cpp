@@ -27,6 +27,17 @@ constexpr std::array<std::uint32_t, 33> ruler_ranks()
 }
 constexpr std::array<std::uint32_t, 33> kRank = ruler_ranks();
 
+// Of each number of positions on a half edge: bit 2 (p - 1) is set where position p is one of them.
+constexpr std::array<std::uint64_t, 34> positions_on_half_edges()
+{
+    std::array<std::uint64_t, 34> bits{};
+    for (std::uint32_t n = 0; n < bits.size(); ++n)
+        for (std::uint32_t p = 1; p <= 32; ++p)
+            if (kRank[p] < n) bits[n] |= std::uint64_t(1) << (2 * (p - 1));
+    return bits;
+}
+constexpr std::array<std::uint64_t, 34> kOnHalfEdge = positions_on_half_edges();
+
 constexpr std::array<std::uint32_t, 129> reciprocals()
 {
     std::array<std::uint32_t, 129> r{};
@@ -89,7 +100,9 @@ struct Positions {
 
     explicit Positions(std::uint32_t factor, bool odd) : span(factor, odd)
     {
-        for (std::uint32_t p = 0; p < span.points; ++p) at[p] = span.position(p);
+        for (std::uint32_t p = 0; p < span.half_points; ++p) at[p] = span.position(p);
+        if (!odd) at[span.half_points] = kHalf;
+        for (std::uint32_t p = 0; p < span.half_points; ++p) at[span.points - 1 - p] = kOne - at[p];
     }
     std::uint32_t operator[](std::uint32_t p) const { return at[p]; }
 };
@@ -102,6 +115,14 @@ struct Row {
     std::uint32_t operator[](std::uint32_t i) const
     {
         return i + 1 == count ? last : first + std::uint32_t(step) * i;
+    }
+    /// In one piece; the last once more behind it.
+    std::array<std::uint32_t, 66> all() const
+    {
+        std::array<std::uint32_t, 66> out;
+        for (std::uint32_t i = 0; i < count; ++i) out[i] = first + std::uint32_t(step) * i;
+        out[count - 1] = out[count] = last;
+        return out;
     }
 };
 
@@ -151,20 +172,20 @@ public:
     void transition(Row const& O, Span const& outer, Row const& I, Span const& inner)
     {
         std::uint32_t const ho = outer.stitch_half(), hi = inner.stitch_half();
+        std::array<std::uint32_t, 66> const outer_row = O.all(), inner_row = I.all();
         std::uint32_t o = 0, i = 0;
-        auto const advance_outer = [&] {
-            add(O[o], O[o + 1], I[i]);
-            ++o;
+        // A triangle on the outer or the inner row, by selects: nobody can predict which is next.
+        auto const advance = [&](bool on_outer) {
+            std::uint32_t const o0 = outer_row[o], o1 = outer_row[o + 1], i0 = inner_row[i],
+                                i1 = inner_row[i + 1];
+            add(on_outer ? o0 : i0, on_outer ? o1 : o0, on_outer ? i0 : i1);
+            o += on_outer;
+            i += !on_outer;
         };
-        auto const advance_inner = [&] {
-            add(I[i], O[o], I[i + 1]);
-            ++i;
-        };
-        if (ho > 0) advance_outer();
-        for (std::uint32_t p = 1; p <= 32; ++p) {
-            if (kRank[p] < hi) advance_inner();
-            if (kRank[p] < ho) advance_outer();
-        }
+        // By position, an inner one's bit below an outer one's: up, and down again.
+        std::uint64_t const all = kOnHalfEdge[hi] | kOnHalfEdge[ho] << 1;
+        if (ho > 0) advance(true);
+        for (std::uint64_t bits = all; bits; bits &= bits - 1) advance(std::countr_zero(bits) & 1);
         if (inner.odd && outer.odd) {
             add(I[i], O[o], I[i + 1]);
             add(I[i + 1], O[o], O[o + 1]);
@@ -173,13 +194,11 @@ public:
             add(I[i], O[o], O[o + 1]);
             ++o;
         } else if (inner.odd) {
-            advance_inner();
+            advance(false);
         }
-        for (std::uint32_t p = 32; p >= 1; --p) {
-            if (kRank[p] < ho) advance_outer();
-            if (kRank[p] < hi) advance_inner();
-        }
-        if (ho > 0) advance_outer();
+        for (std::uint64_t bits = all; bits; bits &= ~std::bit_floor(bits))
+            advance(!(std::countl_zero(bits) & 1));
+        if (ho > 0) advance(true);
     }
 
     std::uint32_t const* end() const { return out_; }
