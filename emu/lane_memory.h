@@ -191,6 +191,38 @@ template <int N> IntLanes<N> permute2(IntLanes<N> a, IntLanes<N> b, IntLanes<N> 
                   permute(b, index & IntLanes<N>(N - 1)));
 }
 
+template <int N> IntLanes<N> min(IntLanes<N> a, IntLanes<N> b)
+{
+    return typename IntLanes<N>::Raw(a.raw < b.raw ? a.raw : b.raw);
+}
+template <int N> IntLanes<N> max(IntLanes<N> a, IntLanes<N> b)
+{
+    return typename IntLanes<N>::Raw(a.raw > b.raw ? a.raw : b.raw);
+}
+
+/// The smallest lane and the largest.
+template <int N> struct LaneRange {
+    std::int32_t low, high;
+
+    explicit LaneRange(IntLanes<N> v) : LaneRange(v, v) {}
+    /// Of the lanes of both.
+    LaneRange(IntLanes<N> least, IntLanes<N> most)
+    {
+        for (int half = N / 2; half > 0; half /= 2) {
+            IntLanes<N> const other = IntLanes<N>::iota() ^ IntLanes<N>(half);
+            least = min(least, permute(least, other));
+            most = max(most, permute(most, other));
+        }
+        low = least.raw[0], high = most.raw[0];
+    }
+};
+
+/// The lanes whose bit is set; the others are like one of these.
+template <int N> IntLanes<N> only(IntLanes<N> v, std::uint32_t bits)
+{
+    return select(Mask<N>::of(bits), v, IntLanes<N>(v.raw[std::countr_zero(bits) % N]));
+}
+
 /// Bytes as lanes.
 template <int N> IntLanes<N> load_bytes(std::uint8_t const* p)
 {
@@ -221,15 +253,6 @@ template <int N> void store_bytes(IntLanes<N> v, std::uint8_t* p)
     typedef std::uint8_t Bytes __attribute__((vector_size(N)));
     Bytes const b = __builtin_convertvector(v.raw, Bytes);
     __builtin_memcpy(p, &b, N);
-}
-
-template <int N> IntLanes<N> min(IntLanes<N> a, IntLanes<N> b)
-{
-    return typename IntLanes<N>::Raw(a.raw < b.raw ? a.raw : b.raw);
-}
-template <int N> IntLanes<N> max(IntLanes<N> a, IntLanes<N> b)
-{
-    return typename IntLanes<N>::Raw(a.raw > b.raw ? a.raw : b.raw);
 }
 
 } // namespace tessemu

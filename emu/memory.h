@@ -69,13 +69,18 @@ public:
             for (; bits; bits &= bits - 1) mark_lane(std::countr_zero(bits));
         return fresh;
     }
-    /// `count` elements from `first` on, of a run that shares none with others: its last is marked
-    /// where all are.
-    void mark_own_run(std::size_t first, std::size_t count)
+    void mark_all(std::size_t first, std::size_t count)
     {
         std::uint8_t* const marks = touched_.data() + first;
-        if (!mark(marks[count - 1])) return;
-        for (std::size_t i = 0; i + 1 < count; ++i) mark(marks[i]);
+        for (std::size_t i = 0; i < count; ++i) mark(marks[i]);
+    }
+    /// The same of a run that shares no element with others: its last is marked where all are.
+    /// Whether it was not.
+    bool mark_own_run(std::size_t first, std::size_t count)
+    {
+        if (!mark(touched_[first + count - 1])) return false;
+        mark_all(first, count - 1);
+        return true;
     }
     /// When the threads are done.
     std::uint64_t count() const

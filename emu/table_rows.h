@@ -45,14 +45,9 @@ template <int N> struct RowSpan {
           is_run(low <= high && all(of == IntLanes<N>::iota() + IntLanes<N>(low)))
     {
         if (is_run) return;
-        row = select(Mask<N>::of(active), of, IntLanes<N>(of.raw[std::countr_zero(active) % N]));
-        IntLanes<N> least = row, most = row;
-        for (int half = N / 2; half > 0; half /= 2) {
-            IntLanes<N> const other = IntLanes<N>::iota() ^ IntLanes<N>(half);
-            least = min(least, permute(least, other));
-            most = max(most, permute(most, other));
-        }
-        low = least.raw[0], high = most.raw[0];
+        row = only(of, active);
+        LaneRange<N> const range(row);
+        low = range.low, high = range.high;
     }
 
     /// work(loaded), where loaded(p) are the floats p[row[l]] of lanes l: neighbours by one load,

@@ -15,6 +15,7 @@
 
 #include "emu/domain_shader.h"
 #include "emu/hull_shader.h"
+#include "emu/listed_sums.h"
 #include "emu/vertex_shader.h"
 #include "shaders_cpp/cage_form/cage_factors.h"
 #include "shaders_cpp/table_term.h"
@@ -49,15 +50,23 @@ struct TableBuffers {
         return {patches.info(), points.info(), vertices.info(), tables.info()};
     }
 
-    /// work(vertex, where the point's table begins) for each point of a patch.
-    template <class T, class Work> void for_each_point(std::int32_t patch, Work const& work) const
+    struct List {
+        std::int32_t first, count; ///< points
+        std::int32_t table;        ///< where the patch's tables begin
+    };
+    template <class T> List list(std::int32_t patch) const
     {
         auto const word = [&](int k) { return load<T>(patches, 3 * patch + k); };
         std::int32_t const first = word(0), count = word(1), table = word(2);
-        for (int k : loop<T>(count)) {
-            std::int32_t const vertex = load<T>(points, 2 * (first + k)),
-                               column = load<T>(points, 2 * (first + k) + 1);
-            work(vertex, int_of<T>(table + column * samples));
+        return {first, count, table};
+    }
+    /// work(vertex, where the point's table begins) for each point of a patch.
+    template <class T, class Work> void for_each_point(List const& list, Work const& work) const
+    {
+        for (int k : loop<T>(list.count)) {
+            std::int32_t const vertex = load<T>(points, 2 * (list.first + k)),
+                               column = load<T>(points, 2 * (list.first + k) + 1);
+            work(vertex, int_of<T>(list.table + column * samples));
         }
     }
     template <class T, int n>
@@ -70,6 +79,25 @@ struct TableBuffers {
         } else {
             return weighted_sum<n>(place, at);
         }
+    }
+    /// The same sums by the fast machine; false where it leaves them to the text.
+    template <class T, int n>
+    bool sum_at_once(List const& of, TablePlace<T, n> const& place, float3<T>& position,
+                     float3<T>& normal) const
+    {
+        constexpr int N = lanes_of<T>, K = TableVertices::kFloats;
+        if constexpr (std::same_as<T, FastLanes<N>>) {
+            ListedSums<N, n> sums{points,  of.first, of.count, tables, of.table,
+                                  samples, vertices, {},       {}};
+            for (int i = 0; i < n; ++i)
+                sums.sample[i] = place.sample[i], sums.weight[i] = place.weight[i].value;
+            if (auto const s = sum_listed<K>(sums)) {
+                position = {(*s)[0], (*s)[1], (*s)[2]};
+                normal = {(*s)[3], (*s)[4], (*s)[5]};
+                return true;
+            }
+        }
+        return false;
     }
     /// Position (0) or normal (3) of a vertex.
     template <class T> float3<T> vector(std::int32_t vertex, int first) const
@@ -92,11 +120,13 @@ struct TablePatch {
     SurfacePoint<T> operator()(std::int32_t patch, TablePlace<T, n> const& place) const
     {
         float3<T> position(T(0), T(0), T(0)), normal = position;
-        buffers.for_each_point<T>(patch, [&](std::int32_t vertex, int_of<T> const& table) {
-            T const weight = buffers.weight_at<T>(buffers.tables, table, place);
-            position = add_term(position, weight, buffers.vector<T>(vertex, 0));
-            normal = add_term(normal, weight, buffers.vector<T>(vertex, 3));
-        });
+        TableBuffers::List const list = buffers.list<T>(patch);
+        if (!buffers.sum_at_once(list, place, position, normal))
+            buffers.for_each_point<T>(list, [&](std::int32_t vertex, int_of<T> const& table) {
+                T const weight = buffers.weight_at<T>(buffers.tables, table, place);
+                position = add_term(position, weight, buffers.vector<T>(vertex, 0));
+                normal = add_term(normal, weight, buffers.vector<T>(vertex, 3));
+            });
         // Opposite normals cancel in between: there is z, the same from all sides.
         return {position, unit_or(normal, [] { return float3<T>(T(0), T(0), T(1)); })};
     }
@@ -139,7 +169,8 @@ template <int kCorners> struct TangentTablePatch {
         V const zero(T(0), T(0), T(0)), z(T(0), T(0), T(1));
         V position = zero, sums[n][2];
         for (auto& s : sums) s[0] = s[1] = zero;
-        buffers.for_each_point<T>(patch, [&](std::int32_t vertex, Int const& table) {
+        TableBuffers::List const list = buffers.list<T>(patch);
+        buffers.for_each_point<T>(list, [&](std::int32_t vertex, Int const& table) {
             V const p = buffers.vector<T>(vertex, 0);
             position = add_term(position, buffers.weight_at<T>(buffers.tables, table, place), p);
             for (int i = 0; i < n; ++i)
