@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/front_end.h"
 
+#include <cstring>
+
 namespace tessemu {
 
 namespace {
@@ -97,7 +99,10 @@ void FrontEnd::hull_and_tessellate(FrontEndChunk& c, TessellatorCache& cache,
         auto const id = std::int64_t(c.first + p);
         if (id == mistakes_.other_factor)
             c.factors[p][0] += c.factors[p][0] > kMaxTessFactor - 2 ? -2.0f : 2.0f;
-        c.patterns[p] = cache.find(c.factors[p]);
+        bool const like_last =
+            p > 0 && id - 1 != mistakes_.reversed_winding &&
+            std::memcmp(&c.factors[p], &c.factors[p - 1], sizeof(TessFactors)) == 0;
+        c.patterns[p] = like_last ? c.patterns[p - 1] : cache.find(c.factors[p]);
         if (id == mistakes_.reversed_winding) c.patterns[p] = turned_over(*c.patterns[p]);
         c.counters.tessellated_points += c.patterns[p]->patch.points();
         c.counters.tessellated_indices += c.patterns[p]->patch.indices.size();
