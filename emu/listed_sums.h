@@ -19,7 +19,8 @@
 namespace tessemu {
 
 /// What is summed. Two lists share no entry; lists that are summed by one table name the same
-/// columns.
+/// columns. A sample is one of the column's, or the one behind them: the next column's first, whose
+/// weight is 0.
 ///
 /// \tparam n  samples of a point; of a single one the weight is 1 and not multiplied
 template <int N, int n> struct ListedSums {
@@ -32,7 +33,8 @@ template <int N, int n> struct ListedSums {
     Lanes<N> weight[n];
 };
 
-/// The K sums; nothing where an index is out of range: the shader's text knows what then.
+/// The K sums; nothing where an index is out of range, or further behind a column: the shader's
+/// text knows what then.
 ///
 /// \cost  counted for each entry of the list as two fetches of it, n of the table and K of the
 ///        record, K mul, K add; and n mul, n - 1 add where n > 1
@@ -59,7 +61,7 @@ std::optional<std::array<Lanes<N>, K>> sum_listed(ListedSums<N, n> const& s)
         least = min(least, sample[i]), most = max(most, sample[i]);
     }
     LaneRange<N> const range(least, most);
-    if (s.table < 0 || range.low < 0 ||
+    if (s.table < 0 || range.low < 0 || range.high > s.samples ||
         s.table + std::int64_t(last_column) * s.samples + range.high >=
             std::int64_t(tables.size()) ||
         (std::int64_t(last_record) + 1) * K > std::int64_t(records.size()))
@@ -97,12 +99,13 @@ std::optional<std::array<Lanes<N>, K>> sum_listed(ListedSums<N, n> const& s)
     }
     if (FetchSlot* const slot = detail::bound_slot(s.tables.slot())) {
         slot->count += n * terms;
-        // And whoever marks a sample of a column marks it of all.
-        bool fresh_samples = false;
-        for (std::int32_t k = 0; slot->touched && (k == 0 || (fresh_samples && k < s.count)); ++k)
+        // And whoever marks a sample of a column marks it of all; but for first ones, which are also
+        // those behind the columns before.
+        bool unsure = range.low == 0 || range.high >= s.samples;
+        for (std::int32_t k = 0; slot->touched && (k == 0 || (unsure && k < s.count)); ++k)
             for (int i = 0; i < n; ++i) {
                 Int const at = Int(s.table + std::int32_t(list[2 * k + 1]) * s.samples) + sample[i];
-                fresh_samples |= slot->touched->mark_each(at, active);
+                unsure |= slot->touched->mark_each(at, active);
             }
     }
     return sum;

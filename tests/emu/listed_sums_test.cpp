@@ -81,14 +81,14 @@ template <int n> void check_random_sums()
 {
     Scene s;
     s.columns = *rc::gen::inRange(1, 20);
-    s.samples = *rc::gen::inRange(1, 40);
+    s.samples = *rc::gen::inRange(1, 2 * N);
     auto const floats = [](int size) {
         return *rc::gen::container<std::vector<float>>(
             std::size_t(size),
             rc::gen::map(rc::gen::inRange(-999, 1000), [](int i) { return float(i) / 7; }));
     };
     int const records = *rc::gen::inRange(1, 30);
-    s.tables = floats(2 * s.columns * s.samples);
+    s.tables = floats(2 * s.columns * s.samples + 1);
     s.records = floats(K * records);
     std::vector<std::uint32_t> columns(static_cast<std::size_t>(s.columns));
     std::iota(columns.begin(), columns.end(), 0u);
@@ -120,7 +120,7 @@ template <int n> void check_random_sums()
                 for (int l = 0; l < N; ++l) {
                     // Lanes that do not run may be anywhere.
                     g.sample[i].raw[l] =
-                        active >> l & 1 ? *rc::gen::inRange(0, s.samples) : 1 << 30;
+                        active >> l & 1 ? *rc::gen::inRange(0, s.samples + 1) : 1 << 30;
                     g.weight[i].raw[l] = float(*rc::gen::inRange(-8, 9)) / 3;
                 }
             groups.push_back(g);
