@@ -69,6 +69,7 @@ public:
             for (; bits; bits &= bits - 1) mark_lane(std::countr_zero(bits));
         return fresh;
     }
+    /// `count` elements from `first` on, which are all there.
     void mark_all(std::size_t first, std::size_t count)
     {
         std::uint8_t* const marks = touched_.data() + first;

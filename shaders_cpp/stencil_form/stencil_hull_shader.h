@@ -64,14 +64,13 @@ template <int kSides, class Weight = float> struct SummedRows {
         using Int = int_of<T>;
         std::int32_t const first_order = patch.primitive_id * in.size();
         std::int32_t const rows = word<T>(patch, StencilPatchWords::kRows);
-        std::int32_t const first_weight_ = word<T>(patch, StencilPatchWords::kWeights);
+        std::int32_t const table = word<T>(patch, StencilPatchWords::kWeights);
         std::int32_t const first_mask = word<T>(patch, StencilPatchWords::kMasks);
         if constexpr (std::same_as<T, FastLanes<lanes_of<T>>>)
-            if (auto const sum =
-                    sum_table_rows<lanes_of<T>>(in, {weights, first_weight_, rows, zero_masks,
-                                                     first_mask, order, first_order, row}))
+            if (auto const sum = sum_table_rows<lanes_of<T>>(
+                    in, {weights, table, rows, zero_masks, first_mask, order, first_order, row}))
                 return *sum;
-        Int const first_weight = Int(first_weight_) + row;
+        Int const first_weight = Int(table) + row;
         Int const mask = load<T>(zero_masks, Int(first_mask) + row);
         return stencil_row<T>(in.size(), [&](int k) {
             std::int32_t const i = load<T>(order, first_order + k);

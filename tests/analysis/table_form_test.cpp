@@ -246,6 +246,7 @@ void expect_gradients(ControlMesh const& mesh, int steps, RefinementStep step)
                 masks.at(v, points.size() > 1 ? std::optional(j) : std::nullopt, sums);
             // A weight has some 200 roundings behind it, of steps and of rings that semi-sharp tags
             // refine; the product's direction is off by those of both tangents, over its length.
+            // The limit's normal has as many behind it.
             Vec const n = cross(applied(a), applied(b));
             double const off = 2 * 200 * 0x1p-53 * magnitude(a) * magnitude(b) / length(n);
             EXPECT_LT(distance(normalize(n), limits.normal[point]), 2 * off) << v << ", edge " << j;
