@@ -30,6 +30,11 @@ struct FlopCount {
     {
         return {a.add * n, a.mul * n, a.mad * n, a.div * n, a.sqrt * n, a.rsqrt * n, a.compare * n};
     }
+    /// Of one invocation of n that cost the same.
+    friend constexpr FlopCount operator/(FlopCount a, std::uint64_t n)
+    {
+        return {a.add / n, a.mul / n, a.mad / n, a.div / n, a.sqrt / n, a.rsqrt / n, a.compare / n};
+    }
     friend constexpr bool operator==(FlopCount const&, FlopCount const&) = default;
 };
 
@@ -65,7 +70,8 @@ struct Execution {
     }
     FlopCount take() { return std::exchange(flops, {}); }
 };
-constinit inline thread_local Execution execution{};
+// Of the initial-exec model: its address is no call, behind which lanes would have to be loaded anew.
+[[gnu::tls_model("initial-exec")]] constinit inline thread_local Execution execution{};
 
 template <class T> struct Counted {
     T value;

@@ -122,7 +122,8 @@ private:
 
     // The cache decides which vertices run, and run again after a miss. They run in blocks; a
     // repeated run gives the same bits, so only the first one writes and threads never share a
-    // place.
+    // place. Where lanes do not bend control flow and nothing is fetched, each run costs the same:
+    // repeated ones are counted only.
     void run_vertex_shader(std::uint32_t instance)
     {
         VertexShader const& vs = d_.vertex_shader;
@@ -132,8 +133,9 @@ private:
         std::vector<char> shaded(limit, 0);
         constexpr std::size_t kBlock = 1 << 16, kPiece = 1 << 9;
         std::vector<std::uint32_t> fresh, repeated;
+        StageCounters all;
 
-        auto const run = [&](std::vector<std::uint32_t>& ids, float* outputs) {
+        auto const run = [&](std::vector<std::uint32_t> const& ids, float* outputs) {
             std::size_t const pieces = (ids.size() + kPiece - 1) / kPiece;
             std::vector<StageCounters> counters(pieces);
             threads_.parallel_for(pieces, [&](std::size_t i) {
@@ -142,13 +144,20 @@ private:
                                    instance},
                        outputs, counters[i], vs_buffers_);
             });
-            for (StageCounters const& c : counters) counters_.vertex += c;
-            ids.clear();
+            for (StageCounters const& c : counters) all += c;
         };
         auto const flush = [&] {
-            counters_.vertex.input_touched += fresh.size();
+            all.input_touched += fresh.size();
             run(fresh, shaded_vertices_.data());
-            run(repeated, nullptr);
+            if (all.features == 0 && !repeated.empty()) {
+                all.flops += all.flops / all.invocations * repeated.size();
+                all.invocations += repeated.size();
+                all.input_fetches += repeated.size();
+            } else {
+                run(repeated, nullptr);
+            }
+            fresh.clear();
+            repeated.clear();
         };
         for (std::uint32_t v : primitives_.stream) {
             if (cache.access(v)) continue;
@@ -157,6 +166,7 @@ private:
             if (fresh.size() + repeated.size() == kBlock) flush();
         }
         flush();
+        counters_.vertex += all;
         stats_.pipeline.VSInvocations = counters_.vertex.invocations;
     }
 

@@ -6,6 +6,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "emu/lanes.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -133,6 +135,19 @@ inline float float_from_half(std::uint16_t bits)
 
 /// trunc(c (2^n - 1) + 0.5) of c clamped to [0,1]; NaN gives 0 (R21). 1 <= bits <= 24.
 std::uint32_t unorm_from_float(float c, int bits);
+/// unorm_from_float(c, 8) lane by lane, in integers: with n = c * 2^31, trunc(255 c + 1/2) is
+/// (255 n + 2^30) / 2^31 = (n - (n - 2^30) / 256) / 2^23, the inner quotient rounded up. From c = 2^-8
+/// on n is whole. Below only c = (2^22 + 2^14 + 2^6 + 1/2) / 2^31 has another result than the whole
+/// number beneath n, and a quarter more rounds n up there.
+template <int N> inline IntLanes<N> unorm8_from_float(Lanes<N> c)
+{
+    using Int = IntLanes<N>;
+    // The number below 1 gives 255 too, and 2^31 would not fit.
+    Lanes<N> const in = min(max(c, Lanes<N>(0.0f)), Lanes<N>(0x1.fffffep-1f));
+    Int const n =
+        __builtin_convertvector((in * Lanes<N>(0x1p31f) + Lanes<N>(0.25f)).raw, typename Int::Raw);
+    return (n - ((n - Int(0x40000000) + Int(255)) >> Int(8))) >> Int(23);
+}
 /// i / (2^n - 1), correctly rounded (R22).
 float float_from_unorm(std::uint32_t i, int bits);
 /// Scale 2^(n-1) - 1, half away from zero (R21).

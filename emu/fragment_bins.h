@@ -32,16 +32,17 @@ public:
                 IntLanes<N> const* color)
     {
         Block& block = block_for(tile, std::uint32_t(n));
-        __builtin_memcpy(block.texel + block.count, &texel.raw, sizeof texel.raw);
-        __builtin_memcpy(block.depth + block.count, &depth.raw, sizeof depth.raw);
-        __builtin_memcpy(block.color + block.count, &color[0].raw, sizeof color[0].raw);
+        std::uint32_t const at = block.count;
+        __builtin_memcpy(block.texel + at, &texel.raw, sizeof texel.raw);
+        __builtin_memcpy(block.depth + at, &depth.raw, sizeof depth.raw);
+        __builtin_memcpy(block.color + at, &color[0].raw, sizeof color[0].raw);
         if (wide_color_) {
             std::size_t const b = std::size_t(&block - blocks_.data());
             for (std::size_t k = 0; k < 3; ++k)
-                __builtin_memcpy(rest_.data() + (b * 3 + k) * kRow + block.count, &color[k + 1].raw,
+                __builtin_memcpy(rest_.data() + (b * 3 + k) * kRow + at, &color[k + 1].raw,
                                  sizeof color[0].raw);
         }
-        block.count += std::uint32_t(n);
+        block.count = at + std::uint32_t(n);
     }
 
     /// Asks for a tile's first block to be brought near.

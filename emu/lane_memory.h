@@ -106,6 +106,29 @@ template <int N> void load_vectors(float const* memory, IntLanes<N> index, Lanes
     for (int k = 0; k < 3; ++k) out[k].raw = detail::joined<N>(column[k]);
 }
 
+/// memory[index] per lane, where lanes 2 l and 2 l + 1 have neighbours: their indices are those of
+/// even lanes and one more.
+template <int N> Lanes<N> load_pairs(float const* memory, IntLanes<N> index)
+{
+    detail::Floats<4> parts[N / 4];
+    for (int q = 0; q < N / 4; ++q) {
+        std::int64_t pair[2];
+        for (int i = 0; i < 2; ++i)
+            __builtin_memcpy(&pair[i], memory + index.raw[4 * q + 2 * i], sizeof pair[i]);
+        parts[q] = detail::Floats<4>(detail::Raw<4>::i64{pair[0], pair[1]});
+    }
+    return typename Lanes<N>::Raw(detail::joined<N>(parts));
+}
+
+/// Rows of four of an array `pitch` elements wide, one behind the other.
+template <int N> IntLanes<N> load_rows_of_four(std::int32_t const* p, std::size_t pitch)
+{
+    detail::Floats<4> rows[N / 4];
+    for (std::size_t r = 0; r < std::size_t(N / 4); ++r)
+        __builtin_memcpy(&rows[r], p + r * pitch, sizeof rows[r]);
+    return typename IntLanes<N>::Raw(detail::joined<N>(rows));
+}
+
 #if defined(__AVX2__)
 namespace detail {
 // By mask of eight lanes: which of them come to the front.

@@ -10,6 +10,8 @@
 
 #include "emu/scalar.h"
 
+#include <utility>
+
 #if defined(__AVX__)
 #include <immintrin.h>
 #endif
@@ -22,7 +24,23 @@ template <int N> struct Raw {
     typedef float f32 __attribute__((vector_size(4 * N)));
     typedef std::int32_t i32 __attribute__((vector_size(4 * N)));
     typedef std::uint32_t u32 __attribute__((vector_size(4 * N)));
+    typedef std::int64_t i64 __attribute__((vector_size(4 * N)));
 };
+
+// Bit i is the sign of lane i.
+template <int N> std::uint32_t signs(typename Raw<N>::i32 raw)
+{
+#if defined(__AVX512DQ__)
+    if constexpr (N == 16) return _mm512_movepi32_mask(__m512i(raw));
+#endif
+#if defined(__AVX__)
+    if constexpr (N == 8) return std::uint32_t(_mm256_movemask_ps(__m256(raw)));
+#endif
+    if constexpr (N == 4) return std::uint32_t(_mm_movemask_ps(__m128(raw)));
+    std::uint32_t b = 0;
+    for (int i = 0; i < N; ++i) b |= std::uint32_t(raw[i] < 0) << i;
+    return b;
+}
 } // namespace detail
 
 /// A bit for each of N lanes.
@@ -43,19 +61,7 @@ template <int N> struct Mask {
     friend Mask operator!(Mask a) { return Raw(~a.raw); }
 
     /// Bit i is lane i.
-    std::uint32_t bits() const
-    {
-#if defined(__AVX512DQ__)
-        if constexpr (N == 16) return _mm512_movepi32_mask(__m512i(raw));
-#endif
-#if defined(__AVX__)
-        if constexpr (N == 8) return std::uint32_t(_mm256_movemask_ps(__m256(raw)));
-#endif
-        if constexpr (N == 4) return std::uint32_t(_mm_movemask_ps(__m128(raw)));
-        std::uint32_t b = 0;
-        for (int i = 0; i < N; ++i) b |= std::uint32_t(raw[i] & 1) << i;
-        return b;
-    }
+    std::uint32_t bits() const { return detail::signs<N>(raw); }
 
     /// Lane i is bit i.
     static Mask of(std::uint32_t bits)
@@ -67,18 +73,12 @@ template <int N> struct Mask {
     /// The first n lanes.
     static Mask first(int n)
     {
-        Raw r;
-        for (int i = 0; i < N; ++i) r[i] = i < n ? -1 : 0;
-        return r;
+        Raw lane;
+        for (int i = 0; i < N; ++i) lane[i] = i;
+        return Raw(lane < n - Raw{});
     }
-    friend bool any(Mask m)
-    {
-        return m.bits() != 0;
-    }
-    friend bool all(Mask m)
-    {
-        return m.bits() == all_lanes<N>();
-    }
+    friend bool any(Mask m) { return m.bits() != 0; }
+    friend bool all(Mask m) { return m.bits() == all_lanes<N>(); }
 };
 
 template <int N> struct IntLanes {
@@ -96,6 +96,8 @@ template <int N> struct IntLanes {
         for (int i = 0; i < N; ++i) r[i] = i;
         return r;
     }
+    /// Bit i is set where lane i is below 0.
+    std::uint32_t negative() const { return detail::signs<N>(raw); }
     // Shader integers wrap.
     friend IntLanes operator+(IntLanes a, IntLanes b) { return Raw(Wrap(a.raw) + Wrap(b.raw)); }
     friend IntLanes operator-(IntLanes a, IntLanes b) { return Raw(Wrap(a.raw) - Wrap(b.raw)); }
@@ -192,6 +194,8 @@ template <int N> struct Lanes {
 #if defined(__AVX__)
         if constexpr (N == 8) {
             __m256 const x(a.raw), y(b.raw);
+            if (b.is_known_above(0))
+                return Lanes(Raw(_mm256_min_ps(x, y))) + Lanes(detail::minus_zero);
             return ordered(x, y, _mm256_or_ps(_mm256_min_ps(y, x), _mm256_min_ps(x, y)));
         }
 #endif
@@ -210,6 +214,7 @@ template <int N> struct Lanes {
 #if defined(__AVX__)
         if constexpr (N == 8) {
             __m256 const x(a.raw), y(b.raw);
+            if (b.is_known_above(-1)) return Raw(_mm256_max_ps(x, y));
             return ordered(x, y, _mm256_and_ps(_mm256_max_ps(y, x), _mm256_max_ps(x, y)));
         }
 #endif
@@ -235,6 +240,20 @@ template <int N> struct Lanes {
 
 private:
 #if defined(__AVX__)
+    // Whether the compiler knows all lanes, and they are 0 or normal numbers whose bits are above
+    // `bits`. Then an instruction with them as the second operand needs no help: it gives them where
+    // the first is none, and a maximum with them is never a denormal.
+    bool is_known_above(std::int32_t bits) const
+    {
+        return [&]<int... i>(std::integer_sequence<int, i...>)
+        {
+            return ((__builtin_constant_p(raw[i]) && std::bit_cast<std::int32_t>(raw[i]) > bits &&
+                     (raw[i] == 0 || (raw[i] >= 0x1p-126f && raw[i] <= 0x1p127f))) &&
+                    ...);
+        }
+        (std::make_integer_sequence<int, N>());
+    }
+
     // The instruction's minimum or maximum where both are numbers, else the one that is: it gives its
     // second operand for equals and for none, so `both` are the results of either order as one.
     static Lanes ordered(__m256 x, __m256 y, __m256 both)

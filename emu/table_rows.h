@@ -20,7 +20,8 @@ namespace tessemu {
 /// Where rows of a patch lie, in buffers of floats, masks and indices. An order names each input
 /// once.
 template <int N> struct TableRows {
-    Buffer<float> const& weights; ///< [input][row] from first_weight on
+    Buffer<float> const&
+        weights; ///< [input][row] from first_weight on; 0 of inputs that are not in it
     std::int32_t first_weight;
     std::int32_t rows;                  ///< from input to input
     Buffer<std::uint32_t> const& masks; ///< [row] from first_mask on: bit i, input i is in it
@@ -51,19 +52,39 @@ template <int N> struct RowSpan {
     }
 
     /// work(loaded), where loaded(p) are the floats p[row[l]] of lanes l: neighbours by one load,
-    /// rows among N neighbours by a load and a permutation.
+    /// rows among N neighbours by a load and a permutation, pairs of neighbours two by two.
     ///
     /// \param more  floats that there are behind p[high]
     template <class Work> auto with_loader(std::int64_t more, Work const& work) const
     {
+        using Int = IntLanes<N>;
         if (is_run) return work([this](float const* p) { return Lanes<N>::load(p + low); });
         if (high - low < N && low + (N - 1) <= high + more)
-            return work([this, at = row - IntLanes<N>(low)](float const* p) {
+            return work([this, at = row - Int(low)](float const* p) {
                 return permute(Lanes<N>::load(p + low), at);
             });
+        Int const odd = Int::iota() & Int(1);
+        if (all(row == permute(row, Int::iota() - odd) + odd))
+            return work([this](float const* p) { return load_pairs<N>(p, row); });
         return work([this](float const* p) { return gather<N>(p, row); });
     }
 };
+
+/// Bit i is set where `order` names input i, if it names each of n once; 0 otherwise.
+template <int N> std::uint32_t inputs_named(std::uint8_t const* order, int n)
+{
+    using Int = IntLanes<N>;
+    Int named(0);
+    for (int k = 0; k < n; k += N) {
+        Int const i = load_bytes<N>(order + k);
+        Mask<N> const counts = Mask<N>::first(n - k) & (i < Int(32));
+        named = named | select(counts, Int(1) << (i & Int(31)), Int(0));
+    }
+    for (int half = N / 2; half > 0; half /= 2)
+        named = named | permute(named, Int::iota() ^ Int(half));
+    auto const bits = std::uint32_t(named.raw[0]);
+    return bits == ~0u >> (32 - n) ? bits : 0;
+}
 
 } // namespace detail
 
@@ -93,42 +114,48 @@ std::optional<float3<Counted<Lanes<N>>>> sum_table_rows(ControlPoints<P> const& 
         std::size_t(t.first_order) + std::size_t(n) > orders.size())
         return {};
 
+    std::uint8_t order[32 + N] = {};
+    std::copy_n(orders.data() + t.first_order, n, order);
+    std::uint32_t const named = detail::inputs_named<N>(order, n);
+    if (named == 0) return {};
+
     Int const at_mask = Int(t.first_mask) + row;
     Int const mask = load<Lanes<N>>(t.masks, at_mask);
-    std::uint32_t named = 0;
-    int total = 0;
+    float const *const points = in.memory(), *const first = weights.data() + t.first_weight;
     auto const sum_by = [&](auto const& loaded) -> float3<T> {
-        std::uint8_t const* const order = orders.data() + t.first_order;
-        float const *const points = in.memory(), *const first = weights.data() + t.first_weight;
-        std::ptrdiff_t const rows = t.rows;
-        Lanes<N> x(0.0f), y(0.0f), z(0.0f);
-        std::uint32_t seen = 0;
-        int all = 0;
-        for (int k = 0; k < n; ++k) {
-            int const i = std::min<int>(order[k], n - 1);
-            seen |= 1u << i;
-            all += order[k];
-            Mask<N> const here = (mask << Int(31 - i)) < Int(0);
-            Lanes<N> const weight = loaded(first + i * rows);
-            float const* const p = points + 3 * i;
-            x = select(here, x + weight * Lanes<N>(p[0]), x);
-            y = select(here, y + weight * Lanes<N>(p[1]), y);
-            z = select(here, z + weight * Lanes<N>(p[2]), z);
-        }
-        named = seen, total = all;
+        Lanes<N> x, y, z;
+        auto const sum_all = [&](auto const& sum_of) {
+            x = y = z = Lanes<N>(0.0f);
+            for (int k = 0; k < n; ++k) {
+                int const i = order[k];
+                Lanes<N> const weight = loaded(first + std::ptrdiff_t(i) * t.rows);
+                float const* const p = points + 3 * i;
+                x = sum_of(i, x, weight * Lanes<N>(p[0]));
+                y = sum_of(i, y, weight * Lanes<N>(p[1]));
+                z = sum_of(i, z, weight * Lanes<N>(p[2]));
+            }
+        };
+        // A term of weight 0 changes no sum, unless its input is no finite number; but it can turn -0,
+        // which a sum becomes where a denormal was flushed, into +0.
+        sum_all([](int, Lanes<N> sum, Lanes<N> term) { return sum + term; });
+        Lanes<N> const zero(0.0f), product = x * y * z * zero;
+        if (!all((product == zero) & (x != zero) & (y != zero) & (z != zero)))
+            sum_all([&](int i, Lanes<N> sum, Lanes<N> term) {
+                return select((mask << Int(31 - i)) < Int(0), sum + term, sum);
+            });
         return {T(x), T(y), T(z)};
     };
     float3<T> const sum = span.with_loader(std::int64_t(weights.size()) - 1 - last, sum_by);
-    if (named != ~0u >> (32 - n) || total != n * (n - 1) / 2) return {}; // else some was too large
 
-    std::uint64_t terms = 0;
-    std::uint32_t inputs = 0;
     Int const counted = mask & Int(Mask<N>::of(active).raw) & Int(std::int32_t(named));
-    for (int l = 0; l < N; ++l) {
-        auto const bits = std::uint32_t(counted.raw[l]);
+    std::uint64_t pairs[N / 2], terms = 0, either = 0;
+    static_assert(sizeof pairs == sizeof counted.raw);
+    __builtin_memcpy(pairs, &counted.raw, sizeof pairs);
+    for (std::uint64_t bits : pairs) {
         terms += std::uint64_t(std::popcount(bits));
-        inputs |= bits;
+        either |= bits;
     }
+    auto const inputs = std::uint32_t(either | either >> 32);
     execution.features |= kBranches | kFetches;
     execution.flops.mul += 3 * terms;
     execution.flops.add += 3 * terms;

@@ -27,7 +27,7 @@ void TriangleStream::tabulate_depth()
     I const k16(16), low(0xffff), k8(8);
     I const first_survivor(covered_survivor_[0]);
     for (std::size_t t = 0; t < covered_; t += std::size_t(N)) {
-        Mask<N> const live = I::iota() < I(std::int32_t(std::min(std::size_t(N), covered_ - t)));
+        Mask<N> const live = Mask<N>::first(int(std::min(std::size_t(N), covered_ - t)));
         I const s = select(live, load_lanes<N>(covered_survivor_ + t), first_survivor);
         I const v0 = gather(survivor_[0], s), v1 = gather(survivor_[1], s),
                 v2 = gather(survivor_[2], s);
@@ -69,21 +69,10 @@ inline void TriangleStream::store_differences(int r, float const* column, I cons
     (c - a).store(float_row(r + 2) + t);
 }
 
-// Of n fragments from q on. They come from at most N neighbouring rows of the table: one load and one
-// permutation each.
-inline TriangleStream::Place TriangleStream::place(std::size_t q, std::size_t n)
+inline TriangleStream::Columns TriangleStream::columns(std::size_t q, Mask<N> live) const
 {
-    Place p;
-    Mask<N> const live = Mask<N>::first(int(n));
-    I const pixel = select(live, load_lanes<N>(queue_pixel_ + q), I(0));
-    p.base = queue_triangle_[q];
-    p.index = select(live, load_lanes<N>(queue_triangle_ + q) - I(p.base), I(0));
-    p.px = pixel & I(0xffff), p.py = pixel >> I(16);
-    I const e1 = ints(kA1, p) * p.px + ints(kB1, p) * p.py + ints(kC1, p);
-    I const e2 = ints(kA2, p) * p.px + ints(kB2, p) * p.py + ints(kC2, p);
-    F const inverse = floats(kInverse, p);
-    p.b1 = F(e1) * inverse, p.b2 = F(e2) * inverse;
-    return p;
+    std::int32_t const base = queue_triangle_[q];
+    return {table_.data() + base, select(live, load_lanes<N>(queue_triangle_ + q) - I(base), I(0))};
 }
 
 // As the target holds it, clamped to the viewport (R135).
@@ -99,21 +88,25 @@ inline TriangleStream::I TriangleStream::depth_code(F z) const
 // without any other.
 void TriangleStream::drop_hidden()
 {
-    auto const* const codes = reinterpret_cast<std::int32_t const*>(setup_->target.depth->codes());
     bool const or_equal = setup_->target.depth_stencil.depth_func == Comparison::LessEqual;
     I const slack(or_equal ? 1 : 0); // codes of depths are whole numbers from 0 on
     std::size_t kept = 0;
-    for (std::size_t q = 0; q < queued_; q += std::size_t(N)) {
-        std::size_t const n = std::min(std::size_t(N), queued_ - q);
-        Place const p = place(q, n);
-        F const z = floats(kZ, p) + (p.b1 * floats(kDz1, p) + p.b2 * floats(kDz2, p));
-        I const texel = (p.py + I(origin_y_)) * I(pitch_) + (p.px + I(origin_x_));
-        Mask<N> const pass = depth_code(z) < gather(codes, texel) + slack;
-        std::uint32_t const bits = pass.bits() & ((1u << n) - 1);
-        I const pixel = load_lanes<N>(queue_pixel_ + q), t = load_lanes<N>(queue_triangle_ + q);
+    for (std::size_t q = 0, queued = queued_; q < queued; q += std::size_t(N)) {
+        Mask<N> const live = Mask<N>::first(int(std::min(std::size_t(N), queued - q)));
+        Columns const of = columns(q, live);
+        I const pixel = load_lanes<N>(queue_pixel_ + q), x = pixel & I(0xffff), y = pixel >> I(16);
+        I const e1 = of.ints(kA1) * x + of.ints(kB1) * y + of.ints(kC1);
+        I const e2 = of.ints(kA2) * x + of.ints(kB2) * y + of.ints(kC2);
+        F const inverse = of.floats(kInverse), b1 = F(e1) * inverse, b2 = F(e2) * inverse;
+        F const z = of.floats(kZ) + (b1 * of.floats(kDz1) + b2 * of.floats(kDz2));
+        Mask<N> const pass = depth_code(z) < load_lanes<N>(queue_depth_ + q) + slack;
+        std::uint32_t const bits = (pass & live).bits();
+        I const t = load_lanes<N>(queue_triangle_ + q);
         store_lanes(compress(pixel, bits), queue_pixel_ + kept);
         store_lanes(compress(t, bits), queue_triangle_ + kept);
         compress(z, bits).store(queue_z_ + kept);
+        compress(b1, bits).store(queue_b_[0] + kept);
+        compress(b2, bits).store(queue_b_[1] + kept);
         kept += std::size_t(std::popcount(bits));
     }
     if (kept == queued_) return;
@@ -138,7 +131,7 @@ void TriangleStream::drop_hidden()
     }
     if (std::size_t(left) == covered_) return;
     covered_ = std::size_t(left);
-    for (int r = 0; r < kDepthRows; ++r)
+    for (int r = kFront; r < kW; ++r)
         for (std::size_t t = 0; t < covered_; t += std::size_t(N)) {
             std::size_t const n = std::min(std::size_t(N), covered_ - t);
             I const from = select(Mask<N>::first(int(n)), load_lanes<N>(source + t), I(0));
@@ -165,40 +158,41 @@ void TriangleStream::tabulate_attributes()
 // Fragments become inputs of the pixel shader.
 void TriangleStream::interpolate()
 {
-    for (std::size_t q = 0; q < queued_; q += std::size_t(N)) {
+    I const origin_x(origin_x_), origin_y(origin_y_), id(primitive_id_);
+    std::size_t const queued = queued_, attributes = std::size_t(attributes_);
+    Interpolation const* const modes = modes_.data();
+    float* const inputs = attribute_storage_.data();
+    for (std::size_t q = 0; q < queued; q += std::size_t(N)) {
         if (shaded_ + std::size_t(N) > kShade) shade();
-        std::size_t const n = std::min(std::size_t(N), queued_ - q);
-        Place const p = place(q, n);
-        auto const of = [&](int r) { return floats(r, p); };
-        F const z = F::load(queue_z_ + q);
-        F const w = F(1.0f) / (of(kW) + (p.b1 * of(kDw1) + p.b2 * of(kDw2)));
-        F const p1 = p.b1 * of(kW1) * w, p2 = p.b2 * of(kW2) * w;
-        std::size_t const at = shaded_;
-        for (int k = 0; k < attributes_; ++k) {
-            int const r = kAttributes + 3 * k;
-            float* const out = attribute_storage_.data() + std::size_t(k) * kShadeRow + at;
-            switch (modes_[std::size_t(k)]) {
-            case Interpolation::Constant:
-                of(r).store(out);
-                break;
-            case Interpolation::LinearNoperspective:
-            case Interpolation::LinearNoperspectiveCentroid:
-                (of(r) + (p.b1 * of(r + 1) + p.b2 * of(r + 2))).store(out);
-                break;
-            default:
-                (of(r) + (p1 * of(r + 1) + p2 * of(r + 2))).store(out);
-            }
+        std::size_t const n = std::min(std::size_t(N), queued - q), at = shaded_;
+        Columns const of = columns(q, Mask<N>::first(int(n)));
+        F const b1 = F::load(queue_b_[0] + q), b2 = F::load(queue_b_[1] + q);
+        F const w = F(1.0f) / (of.floats(kW) + (b1 * of.floats(kDw1) + b2 * of.floats(kDw2)));
+        F const p1 = b1 * of.floats(kW1) * w, p2 = b2 * of.floats(kW2) * w;
+        for (std::size_t k = 0; k < attributes; ++k) {
+            int const r = kAttributes + 3 * int(k);
+            F const base = of.floats(r);
+            auto const linear = [&](F f1, F f2) {
+                return base + (f1 * of.floats(r + 1) + f2 * of.floats(r + 2));
+            };
+            F const v = modes[k] == Interpolation::Constant ? base
+                        : modes[k] == Interpolation::LinearNoperspective ||
+                                modes[k] == Interpolation::LinearNoperspectiveCentroid
+                            ? linear(b1, b2)
+                            : linear(p1, p2);
+            v.store(inputs + k * kShadeRow + at);
         }
-        I const X = p.px + I(origin_x_), Y = p.py + I(origin_y_);
-        store_lanes(X, pixel_x_ + at);
-        store_lanes(Y, pixel_y_ + at);
-        store_lanes(I(primitive_id_), id_ + at);
-        store_lanes(ints(kFront, p), front_ + at);
-        (F(X) + F(0.5f)).store(position_[0] + at);
-        (F(Y) + F(0.5f)).store(position_[1] + at);
-        z.store(position_[2] + at);
+        I const pixel = load_lanes<N>(queue_pixel_ + q), x = (pixel & I(0xffff)) + origin_x,
+                y = (pixel >> I(16)) + origin_y;
+        store_lanes(x, pixel_x_ + at);
+        store_lanes(y, pixel_y_ + at);
+        store_lanes(id, id_ + at);
+        store_lanes(of.ints(kFront), front_ + at);
+        (F(x) + F(0.5f)).store(position_[0] + at);
+        (F(y) + F(0.5f)).store(position_[1] + at);
+        F::load(queue_z_ + q).store(position_[2] + at);
         w.store(position_[3] + at);
-        shaded_ += n;
+        shaded_ = at + n;
     }
 }
 
@@ -217,32 +211,26 @@ void TriangleStream::shade()
     batch.color = color_rows_;
     setup_->pixel_shader.run_uncounted(batch);
 
-    for (std::size_t q = 0; q < shaded_; q += std::size_t(N)) {
-        int const n = int(std::min(std::size_t(N), shaded_ - q));
+    I const shift(kTileShift), pitch(pitch_), columns(tiles_.columns), first(tiles_.number(0, 0));
+    bool const wide_color = wide_color_;
+    for (std::size_t q = 0, shaded = shaded_; q < shaded; q += std::size_t(N)) {
+        int const n = int(std::min(std::size_t(N), shaded - q));
         I const depth = depth_code(F::load(position_[2] + q));
         I const x = load_lanes<N>(pixel_x_ + q), y = load_lanes<N>(pixel_y_ + q);
-        I const shift(kTileShift);
-        I const texel = y * I(pitch_) + x;
-        I const tiles = (y >> shift) * I(tiles_.columns) + (x >> shift) + I(tiles_.number(0, 0));
+        I const texel = y * pitch + x;
+        I const tiles = (y >> shift) * columns + (x >> shift) + first;
         I color[4];
-        if (wide_color_) {
+        if (wide_color) {
             for (int k = 0; k < 4; ++k) {
                 F const c = F::load(color_[k] + q);
                 color[k] = select(c == c, I(I::Raw(c.raw)), I(kCanonicalNan));
             }
         } else {
-            // R21 in double, which is exact.
-            typedef double D __attribute__((vector_size(8 * N)));
             color[0] = I(0);
-            for (int k = 0; k < 4; ++k) {
-                F const c = F::load(color_[k] + q);
-                F const in = select(c > F(0.0f), select(c < F(1.0f), c, F(1.0f)), F(0.0f));
-                D const scaled = __builtin_convertvector(in.raw, D) * 255.0 + 0.5;
-                color[0] =
-                    color[0] | (I(I::Raw(__builtin_convertvector(scaled, I::Raw))) << I(8 * k));
-            }
+            for (int k = 0; k < 4; ++k)
+                color[0] = color[0] | (unorm8_from_float(F::load(color_[k] + q)) << I(8 * k));
         }
-        std::uint32_t rest = n == N ? Mask<N>(true).bits() : (1u << n) - 1;
+        std::uint32_t rest = Mask<N>::first(n).bits();
         if (((tiles == I(tiles.raw[0])).bits() & rest) == rest) {
             bins_->append(std::size_t(tiles.raw[0]), n, texel, depth, color);
             continue;
@@ -251,7 +239,7 @@ void TriangleStream::shade()
             std::int32_t const t = tiles.raw[std::countr_zero(rest)];
             std::uint32_t const here = (tiles == I(t)).bits() & rest;
             I some[4];
-            for (int k = 0; k < (wide_color_ ? 4 : 1); ++k) some[k] = compress(color[k], here);
+            for (int k = 0; k < (wide_color ? 4 : 1); ++k) some[k] = compress(color[k], here);
             bins_->append(std::size_t(t), std::popcount(here), compress(texel, here),
                           compress(depth, here), some);
             rest &= ~here;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/triangle_stream.h"
 
+#include <array>
 #include <bit>
 
 namespace tessemu {
@@ -109,12 +110,12 @@ void TriangleStream::add_patch(DomainPoints const& pattern, std::int32_t primiti
     }
     counters.clip_invocations += triangles;
     counters.clip_primitives += triangles;
-    for (std::int32_t y = origin_y_; y <= high_y >> 8; ++y) { // for drop_hidden()
-        std::uint32_t const* const depths =
-            setup_->target.depth->codes() + std::size_t(y) * std::size_t(pitch_);
-        for (std::int32_t x = origin_x_; x <= (high_x >> 8) + 15; x += 16)
-            __builtin_prefetch(depths + x);
-    }
+    DepthTarget const& depth = *setup_->target.depth;
+    depths_ =
+        reinterpret_cast<std::int32_t const*>(depth.codes()) + depth.index(origin_x_, origin_y_);
+    for (std::int32_t y = 0; y <= (high_y >> 8) - origin_y_; ++y)
+        for (std::int32_t x = 0; x <= (high_x >> 8) - origin_x_ + 15; x += 16)
+            __builtin_prefetch(depths_ + std::size_t(y) * std::size_t(pitch_) + x);
     // Runs of points may be read past the last one.
     if (packed_.size() < padded + 16) packed_.resize(padded + 16);
     I const ox(origin_x_ * 256), oy(origin_y_ * 256);
@@ -183,27 +184,27 @@ inline void TriangleStream::set_up(I v0, I v1, I v2, I triangle)
 
 namespace {
 
-// Pixel k of a 4x4 block as y << 16 | x.
-template <int N> IntLanes<N> block_offsets(int first)
+// Pixel k of a row of four and those below it, as y << 16 | x.
+template <int N> IntLanes<N> unit_offsets()
 {
     IntLanes<N> r;
-    for (int i = 0; i < N; ++i) r.raw[i] = ((first + i) >> 2) << 16 | ((first + i) & 3);
+    for (int i = 0; i < N; ++i) r.raw[i] = (i >> 2) << 16 | (i & 3);
     return r;
 }
 
 } // namespace
 
-// Queues the pixels of a 4x4 block whose bit is set; the entry is written in full and kept as far
-// as bits go.
-inline void TriangleStream::queue_block(std::int32_t corner, std::uint32_t mask,
-                                        std::int32_t triangle)
+// Queues those of N pixels, in rows of four from `corner` on, whose bit is set; entries are written in
+// full and kept as far as bits go.
+inline void TriangleStream::queue_unit(std::int32_t corner, std::uint32_t bits)
 {
-    for (int part = 0; part < 16; part += N) {
-        std::uint32_t const here = N == 16 ? mask : mask >> part & ((1u << (N & 15)) - 1);
-        store_lanes(I(corner) + compress(block_offsets<N>(part), here), queue_pixel_ + queued_);
-        store_lanes(I(triangle), queue_triangle_ + queued_);
-        queued_ += std::size_t(std::popcount(here));
-    }
+    std::int32_t const* const depths =
+        depths_ + std::ptrdiff_t(corner >> 16) * pitch_ + (corner & 0xffff);
+    store_lanes(I(corner) + compress(unit_offsets<N>(), bits), queue_pixel_ + queued_);
+    store_lanes(I(std::int32_t(covered_)), queue_triangle_ + queued_);
+    store_lanes(compress(load_rows_of_four<N>(depths, std::size_t(pitch_)), bits),
+                queue_depth_ + queued_);
+    queued_ += std::size_t(std::popcount(bits));
 }
 
 void TriangleStream::cover_survivors()
@@ -216,7 +217,7 @@ void TriangleStream::cover_survivors()
 
 void TriangleStream::cover_group(std::size_t first, int count)
 {
-    if (queued_ + 16 * std::size_t(N) > kQueue) finish_covered();
+    if (queued_ + 2 * std::size_t(N) > kQueue) finish_covered();
     I const v0 = load_lanes<N>(survivor_[0] + first), v1 = load_lanes<N>(survivor_[1] + first),
             v2 = load_lanes<N>(survivor_[2] + first);
     I const k16(16), low(0xffff), k8(8), up(127), down(-129);
@@ -225,117 +226,131 @@ void TriangleStream::cover_group(std::size_t first, int count)
             top = (min(min(y[0], y[1]), y[2]) + up) >> k8;
     I const right = (max(max(x[0], x[1]), x[2]) + down) >> k8,
             bottom = (max(max(y[0], y[1]), y[2]) + down) >> k8;
-    std::uint32_t const valid = count == N ? Mask<N>(true).bits() : (1u << count) - 1;
-    // Edge i lies opposite vertex i; at the first pixel's centre, then stepped. Strict edges are
-    // moved by one unit, so that >= 0 holds for both kinds. 32 bits hold the values about boxes of
-    // up to 60 pixels.
+    std::uint32_t const valid = Mask<N>::first(count).bits();
+    // Strict edges are moved by one unit, so that >= 0 holds for both kinds. 32 bits hold the values
+    // about boxes of up to 60 pixels.
     I const cx = (left << k8) + I(128), cy = (top << k8) + I(128);
-    I e[3], step_x[3], step_y[3];
+    Group g{{}, {}, {}, left | (top << k16), right - left, bottom - top};
     for (int i = 0; i < 3; ++i) {
         int const a = (i + 1) % 3, b = (i + 2) % 3;
         I const dx = x[b] - x[a], dy = y[b] - y[a];
         Mask<N> const top_left = (dy < I(0)) | ((dy == I(0)) & (dx > I(0)));
-        e[i] = dx * (cy - y[a]) - dy * (cx - x[a]) - select(top_left, I(0), I(1));
-        step_x[i] = I(0) - (dy << k8);
-        step_y[i] = dx << k8;
+        g.edge[i] = dx * (cy - y[a]) - dy * (cx - x[a]) - select(top_left, I(0), I(1));
+        g.step_x[i] = I(0) - (dy << k8);
+        g.step_y[i] = dx << k8;
     }
-    I const columns = right - left, rows = bottom - top, corner = left | (top << k16);
-    std::uint32_t const larger = (max(columns, rows) >= I(4)).bits() & valid;
-    if (larger == 0) return cover_small(first, valid, corner, columns, rows, e, step_x, step_y);
-    std::uint32_t const huge = (max(columns, rows) >= I(60)).bits() & valid;
-    cover_blocks(first, count, huge, corner, columns, rows, e, step_x, step_y);
+    I const longest = max(g.columns, g.rows);
+    if (((longest > I(0)).bits() & valid) == 0) return cover_pixels(first, valid, g);
+    std::uint32_t const large = (longest > I(3)).bits() & valid,
+                        huge = (longest > I(59)).bits() & valid;
+    std::int32_t blocks[N], corners[N];
+    I const covered = cover_blocks(g, valid & ~large);
+    int const parts = N == 16 || (covered > I(all_lanes<N>())).bits() & valid ? 16 : N;
+    store_lanes(covered, blocks);
+    store_lanes(g.corner, corners);
+    GroupRows rows;
+    if (large) rows = GroupRows(g);
+    for (std::uint32_t bits = ((covered != I(0)).bits() & valid) | large; bits; bits &= bits - 1) {
+        int const l = std::countr_zero(bits);
+        std::size_t const survivor = first + std::size_t(l);
+        if (huge >> l & 1) {
+            cover_huge(survivor);
+            continue;
+        }
+        if (large >> l & 1) {
+            cover_large(survivor, rows, l);
+            continue;
+        }
+        if (queued_ + 32 > kQueue) finish_covered();
+        for (int part = 0; part < parts; part += N)
+            queue_unit(corners[l] + (part >> 2 << 16),
+                       std::uint32_t(blocks[l]) >> part & all_lanes<N>());
+        covered_survivor_[covered_++] = std::int32_t(survivor);
+    }
 }
 
-// Triangles within 4x4 pixels: a 16-bit mask each.
-inline void TriangleStream::cover_small(std::size_t first, std::uint32_t valid, I corner, I columns,
-                                        I rows, I (&e)[3], I const (&step_x)[3],
-                                        I const (&step_y)[3])
+// Triangles whose box holds one pixel centre.
+inline void TriangleStream::cover_pixels(std::size_t first, std::uint32_t valid, Group const& g)
 {
-    std::uint32_t const wide = (columns >= I(1)).bits() & valid,
-                        tall = (rows >= I(1)).bits() & valid;
-    if ((wide | tall) == 0) { // one pixel each
-        std::uint32_t const covers = ((e[0] | e[1] | e[2]) >= I(0)).bits() & valid;
-        int const n = std::popcount(covers);
-        store_lanes(compress(corner, covers), queue_pixel_ + queued_);
-        store_lanes(I(std::int32_t(covered_)) + I::iota(), queue_triangle_ + queued_);
-        store_lanes(compress(I::iota() + I(std::int32_t(first)), covers),
-                    covered_survivor_ + covered_);
-        queued_ += std::size_t(n);
-        covered_ += std::size_t(n);
-        return;
-    }
-    // Pixels right of a box or below it are never inside its triangle.
-    int const last_column = (columns >= I(2)).bits() & valid ? 3 : 1,
-              last_row = (rows >= I(2)).bits() & valid ? 3 : 1;
+    std::uint32_t const covers = ~(g.edge[0] | g.edge[1] | g.edge[2]).negative() & valid;
+    I const texel = (g.corner >> I(16)) * I(pitch_) + (g.corner & I(0xffff));
+    I const depth = gather(depths_, select(Mask<N>::of(valid), texel, I(0)));
+    store_lanes(compress(g.corner, covers), queue_pixel_ + queued_);
+    store_lanes(compress(depth, covers), queue_depth_ + queued_);
+    store_lanes(I(std::int32_t(covered_)) + I::iota(), queue_triangle_ + queued_);
+    store_lanes(compress(I::iota() + I(std::int32_t(first)), covers), covered_survivor_ + covered_);
+    queued_ += std::size_t(std::popcount(covers));
+    covered_ += std::size_t(std::popcount(covers));
+}
+
+// Of those within 4x4 pixels: bit 4 y + x says whether pixel (x, y) of the box is covered.
+inline TriangleStream::I TriangleStream::cover_blocks(Group const& g, std::uint32_t small)
+{
     I masks(0);
+    if (small == 0) return masks;
+    // Pixels right of a box or below it are never inside its triangle.
+    auto const last = [&](I of) {
+        return (of > I(2)).bits() & small ? 3 : (of > I(1)).bits() & small ? 2 : 1;
+    };
+    int const last_column = last(g.columns), last_row = last(g.rows);
+    I e[3] = {g.edge[0], g.edge[1], g.edge[2]};
     for (int r = 0; r <= last_row; ++r) {
         I f[3] = {e[0], e[1], e[2]};
         for (int c = 0; c <= last_column; ++c) {
             I const outside = (f[0] | f[1] | f[2]) >> I(31);
-            masks = masks | ((I(1) & (outside ^ I(-1))) << I(4 * r + c));
-            for (int i = 0; i < 3; ++i) f[i] = f[i] + step_x[i];
+            masks = masks | (((outside + I(1)) << I(4 * r + c)));
+            for (int i = 0; i < 3; ++i) f[i] = f[i] + g.step_x[i];
         }
-        for (int i = 0; i < 3; ++i) e[i] = e[i] + step_y[i];
+        for (int i = 0; i < 3; ++i) e[i] = e[i] + g.step_y[i];
     }
-    std::int32_t mask[N], at[N];
-    store_lanes(masks, mask);
-    store_lanes(corner, at);
-    for (std::uint32_t bits = (masks != I(0)).bits() & valid; bits; bits &= bits - 1) {
-        int const l = std::countr_zero(bits);
-        covered_survivor_[covered_] = std::int32_t(first) + l;
-        queue_block(at[l], std::uint32_t(mask[l]), std::int32_t(covered_++));
-    }
+    return masks;
 }
 
-// Larger ones: all blocks of all triangles in one loop, with selects for its bends.
-void TriangleStream::cover_blocks(std::size_t first, int count, std::uint32_t huge, I corner,
-                                  I columns, I rows, I const (&e)[3], I const (&step_x)[3],
-                                  I const (&step_y)[3])
+// A larger one, in units of N pixels: lanes over units tell which of them an edge leaves out, lanes
+// over pixels what the others cover.
+inline void TriangleStream::cover_large(std::size_t survivor, GroupRows const& g, int l)
 {
-    std::int32_t rows_of[12][N];
-    I const values[12] = {e[0],      e[1],      e[2],      step_x[0], step_x[1], step_x[2],
-                          step_y[0], step_y[1], step_y[2], corner,    columns,   rows};
-    for (int k = 0; k < 12; ++k) store_lanes(values[k], rows_of[k]);
-    constexpr int kParts = 16 / N;
-    I offset_x[kParts], offset_y[kParts];
-    for (int part = 0; part < kParts; ++part) {
-        I const o = block_offsets<N>(part * N);
-        offset_x[part] = o & I(0xffff);
-        offset_y[part] = o >> I(16);
+    constexpr std::int32_t kRows = N / 4;
+    // u * kReciprocal[n] >> 16 is u / n for all units of a box of 15 x 15 blocks.
+    static constexpr auto kReciprocal = [] {
+        std::array<std::int32_t, 16> inverse{};
+        for (std::int32_t n = 1; n < 16; ++n) inverse[std::size_t(n)] = (65536 + n - 1) / n;
+        return inverse;
+    }();
+    std::int32_t const across = (g.columns[l] >> 2) + 1, units = across * (g.rows[l] / kRows + 1);
+    if (queued_ + std::size_t(units * N) + 32 > kQueue) finish_covered();
+    I const offset = unit_offsets<N>(), offset_x = offset & I(0xffff), offset_y = offset >> I(16);
+    I pixel[3]; // what a pixel of a unit adds
+    std::int32_t most[3];
+    for (int i = 0; i < 3; ++i) {
+        std::int32_t const x = g.step_x[i][l], y = g.step_y[i][l];
+        pixel[i] = I(x) * offset_x + I(y) * offset_y;
+        most[i] = std::max(0, 3 * x) + std::max(0, (kRows - 1) * y);
     }
-    for (int l = 0; l < count; ++l) {
-        if (huge >> l & 1) {
-            cover_huge(first + std::size_t(l));
-            continue;
+    std::size_t const before = queued_;
+    for (std::int32_t from = 0; from < units; from += N) {
+        I const u = I::iota() + I(from);
+        I const row = (u * I(kReciprocal[std::size_t(across)])) >> I(16);
+        I const x = (u - row * I(across)) << I(2), y = row * I(kRows);
+        std::int32_t edge[3][N], corners[N];
+        I outside(0);
+        for (int i = 0; i < 3; ++i) {
+            I const value = I(g.edge[i][l]) + I(g.step_x[i][l]) * x + I(g.step_y[i][l]) * y;
+            store_lanes(value, edge[i]);
+            outside = outside | (value + I(most[i]));
         }
-        I base[3][kParts];
-        for (int i = 0; i < 3; ++i)
-            for (int part = 0; part < kParts; ++part)
-                base[i][part] = I(rows_of[i][l]) + I(rows_of[3 + i][l]) * offset_x[part] +
-                                I(rows_of[6 + i][l]) * offset_y[part];
-        std::int32_t const last_x = rows_of[10][l], last_y = rows_of[11][l], at = rows_of[9][l];
-        int const blocks_x = (last_x >> 2) + 1, blocks = blocks_x * ((last_y >> 2) + 1);
-        if (queued_ + 16 * std::size_t(blocks) + 32 > kQueue) finish_covered();
-        std::size_t const before = queued_;
-        std::int32_t bx = 0, by = 0;
-        for (int b = 0; b < blocks; ++b) {
-            std::uint32_t mask = 0;
-            for (int part = 0; part < kParts; ++part) {
-                I outside(0);
-                for (int i = 0; i < 3; ++i)
-                    outside = outside |
-                              (base[i][part] + I(rows_of[3 + i][l] * bx + rows_of[6 + i][l] * by));
-                mask |= (outside >= I(0)).bits() << (part * N);
-            }
-            queue_block(at + (by << 16 | bx), mask, std::int32_t(covered_));
-            bx += 4;
-            bool const next_row = bx > last_x;
-            by += next_row ? 4 : 0;
-            bx = next_row ? 0 : bx;
+        store_lanes(I(g.corner[l]) + (x | (y << I(16))), corners);
+        std::uint32_t const reached =
+            ~outside.negative() & Mask<N>::first(std::min(N, units - from)).bits();
+        for (std::uint32_t bits = reached; bits; bits &= bits - 1) {
+            int const k = std::countr_zero(bits);
+            I out(0);
+            for (int i = 0; i < 3; ++i) out = out | (pixel[i] + I(edge[i][k]));
+            queue_unit(corners[k], ~out.negative() & all_lanes<N>());
         }
-        covered_survivor_[covered_] = std::int32_t(first) + l;
-        covered_ += queued_ != before;
     }
+    covered_survivor_[covered_] = std::int32_t(survivor);
+    covered_ += queued_ != before;
 }
 
 // A triangle whose edge values need 64 bits: pixel by pixel.
@@ -369,6 +384,7 @@ void TriangleStream::cover_huge(std::size_t s)
             if (!entered) covered_survivor_[covered_++] = std::int32_t(s);
             entered = true;
             queue_pixel_[queued_] = py << 16 | px;
+            queue_depth_[queued_] = depths_[std::ptrdiff_t(py) * pitch_ + px];
             queue_triangle_[queued_++] = std::int32_t(covered_ - 1);
         }
 }

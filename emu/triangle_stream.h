@@ -10,7 +10,8 @@
 //
 // On the geometry side: set-up and rejection with lanes over triangles, coverage in blocks of 4x4
 // pixels, fragments dropped that lie behind what earlier waves left, attributes fetched once a triangle
-// that is left, fragments shaded in dense groups and sorted into tiles. On the raster side, tile by tile: the depth test in submission order.
+// that is left, fragments shaded in dense groups and sorted into tiles. On the raster side, tile by
+// tile: the depth test in submission order.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -61,14 +62,13 @@ private:
         kA2,
         kB2,
         kC2,
-        kFront,
         kInverse,
         kZ,
         kDz1,
         kDz2,
+        kFront,
         kCorner, // three: the corners' vertices
-        kDepthRows = kCorner + 3,
-        kW = kDepthRows,
+        kW = kCorner + 3,
         kDw1,
         kDw2,
         kW1,
@@ -79,25 +79,38 @@ private:
     void set_up(I v0, I v1, I v2, I triangle);
     void cover_survivors();
     void cover_group(std::size_t first, int count);
-    void cover_small(std::size_t first, std::uint32_t valid, I corner, I columns, I rows, I (&e)[3],
-                     I const (&step_x)[3], I const (&step_y)[3]);
-    void cover_blocks(std::size_t first, int count, std::uint32_t huge, I corner, I columns, I rows,
-                      I const (&e)[3], I const (&step_x)[3], I const (&step_y)[3]);
+    // N triangles. Edge i lies opposite vertex i: its value at the centre of the box's first pixel, and
+    // what a pixel to the right or below adds.
+    struct Group {
+        I edge[3], step_x[3], step_y[3];
+        I corner, columns, rows; // of the box; columns and rows but the first
+    };
+    struct GroupRows { // its lanes one by one
+        GroupRows() = default;
+        explicit GroupRows(Group const& g) { __builtin_memcpy(this, &g, sizeof g); }
+        std::int32_t edge[3][N], step_x[3][N], step_y[3][N], corner[N], columns[N], rows[N];
+    };
+    void cover_pixels(std::size_t first, std::uint32_t valid, Group const& g);
+    static I cover_blocks(Group const& g, std::uint32_t small);
+    void cover_large(std::size_t survivor, GroupRows const& g, int lane);
     void cover_huge(std::size_t survivor);
-    void queue_block(std::int32_t corner, std::uint32_t mask, std::int32_t triangle);
+    void queue_unit(std::int32_t corner, std::uint32_t bits);
     void finish_covered();
     void tabulate_depth();
     void drop_hidden();
     void tabulate_attributes();
-    struct Place {
-        I px, py; ///< of the patch
-        std::int32_t base;
-        I index; ///< of the triangles' rows behind `base`
-        F b1, b2;
+    // Where n fragments from q on look into the table: they come from at most N triangles that follow
+    // each other, so that what they need of a row is one load and one permutation.
+    struct Columns {
+        std::int32_t const* first;
+        I index; ///< behind `first`
+        I ints(int r) const
+        {
+            return permute(load_lanes<N>(first + std::size_t(r) * kTableRow), index);
+        }
+        F floats(int r) const { return F(typename F::Raw(ints(r).raw)); }
     };
-    Place place(std::size_t q, std::size_t n);
-    I ints(int r, Place const& p) { return permute(load_lanes<N>(row(r) + p.base), p.index); }
-    F floats(int r, Place const& p) { return permute(F::load(float_row(r) + p.base), p.index); }
+    Columns columns(std::size_t q, Mask<N> live) const;
     void interpolate();
     void store_differences(int row, float const* column, I const (&id)[3], std::size_t t);
     I depth_code(F z) const;
@@ -121,6 +134,7 @@ private:
     std::vector<std::int32_t> packed_;
     DomainPoints const* pattern_ = nullptr;
     std::int32_t origin_x_ = 0, origin_y_ = 0, primitive_id_ = 0;
+    std::int32_t const* depths_ = nullptr; // the target's, from the patch's origin on
     std::vector<AssembledPrimitive> assembled_;
 
     std::size_t survivors_ = 0;
@@ -130,7 +144,8 @@ private:
     std::int32_t covered_survivor_[kTableRow];
     std::size_t queued_ = 0;
     std::int32_t queue_pixel_[kQueue + 32], queue_triangle_[kQueue + 32]; // y << 16 | x
-    float queue_z_[kQueue + 32];
+    std::int32_t queue_depth_[kQueue + 32];                               // the target's code
+    float queue_z_[kQueue + 32], queue_b_[2][kQueue + 32];
     std::int32_t number_[kTableRow]; // by covered triangle: among those that keep a fragment
     std::size_t shaded_ = 0;
     std::int32_t pixel_x_[kShadeRow], pixel_y_[kShadeRow], id_[kShadeRow], front_[kShadeRow],

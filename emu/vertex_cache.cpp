@@ -3,6 +3,7 @@
 
 #include "emu/error.h"
 
+#include <algorithm>
 #include <charconv>
 
 namespace tessemu {
@@ -44,7 +45,9 @@ VertexCache::VertexCache(VertexCacheModel model, std::uint32_t vertex_id_limit)
     : model_(model),
       resident_(model.kind == Kind::None ? 0 : vertex_id_limit)
 {
-    if (model.kind == Kind::Fifo || model.kind == Kind::Lru) {
+    if (model.kind == Kind::Fifo)
+        ring_.assign(std::min(model.entries, std::max(vertex_id_limit, 1u)), kNone);
+    if (model.kind == Kind::Lru) {
         newer_.resize(vertex_id_limit);
         older_.resize(vertex_id_limit);
     }
@@ -68,26 +71,26 @@ bool VertexCache::access(std::uint32_t vertex)
 {
     if (model_.kind == Kind::None) return false;
     bool const hit = resident_[vertex];
-    if (model_.kind == Kind::Infinite) {
-        resident_[vertex] = 1;
-        return hit;
+    resident_[vertex] = 1;
+    if (model_.kind == Kind::Infinite) return hit;
+    if (model_.kind == Kind::Fifo) {
+        if (hit) return true;
+        std::uint32_t& oldest = ring_[next_];
+        if (oldest != kNone) resident_[oldest] = 0;
+        oldest = vertex;
+        next_ = next_ + 1 == ring_.size() ? 0 : next_ + 1;
+        return false;
     }
     if (hit) {
-        if (model_.kind == Kind::Lru) {
-            unlink(vertex);
-            link_newest(vertex);
-        }
-        return true;
-    }
-    if (size_ == model_.entries) {
+        unlink(vertex);
+    } else if (size_ == model_.entries) {
         resident_[oldest_] = 0;
         unlink(oldest_);
     } else {
         ++size_;
     }
-    resident_[vertex] = 1;
     link_newest(vertex);
-    return false;
+    return hit;
 }
 
 } // namespace tessemu

@@ -41,7 +41,9 @@ private:
     static constexpr std::uint32_t kNone = 0xffffffffu;
     VertexCacheModel model_;
     std::vector<char> resident_;
-    std::vector<std::uint32_t> newer_, older_; // a list from oldest to newest
+    std::vector<std::uint32_t> ring_; // of Fifo, the oldest at next_
+    std::size_t next_ = 0;
+    std::vector<std::uint32_t> newer_, older_; // of Lru, a list from oldest to newest
     std::uint32_t oldest_ = kNone, newest_ = kNone, size_ = 0;
 };
 

@@ -48,6 +48,28 @@ TEST(Formats, R20NarrowFloatsRoundTowardZero)
     EXPECT_EQ(v[3], 1.0f);
 }
 
+// About every step from code to code, and over all floats in strides.
+TEST(Formats, R21LanesRoundToTheSameCode)
+{
+    constexpr int N = kRasterLanes;
+    std::vector<float> all{kNan, kInf, -kInf, -0.0f, -1.0f, 1e-40f, -1e-40f, 2.0f};
+    for (int k = 0; k <= 256; ++k) {
+        auto const middle = std::bit_cast<std::uint32_t>(std::max(0.0f, float((k - 0.5) / 255)));
+        for (std::uint32_t i = 0; i < 64; ++i) {
+            all.push_back(std::bit_cast<float>(middle + i));
+            if (middle >= i) all.push_back(std::bit_cast<float>(middle - i));
+        }
+    }
+    for (std::uint64_t i = 0; i < std::uint64_t(1) << 32; i += 4099)
+        all.push_back(std::bit_cast<float>(std::uint32_t(i)));
+    all.resize((all.size() + N - 1) / N * N);
+    for (std::size_t i = 0; i < all.size(); i += N) {
+        IntLanes<N> const codes = unorm8_from_float(Lanes<N>::load(all.data() + i));
+        for (std::size_t l = 0; l < N; ++l)
+            ASSERT_EQ(std::uint32_t(codes.raw[l]), unorm_from_float(all[i + l], 8)) << all[i + l];
+    }
+}
+
 TEST(Formats, R21I8UnormAndSnormReachEveryCodeAndNeverDecrease)
 {
     std::uint32_t last = 0;

@@ -202,6 +202,49 @@ TEST(PipelineStatistics, R42R43R156R157R158R159R160R161R162R163I2I16CountATessel
     }
 }
 
+// Doubles its vertex, and where `bent` those with an x above 0 twice.
+struct Doubling : PassThrough {
+    bool bent = false;
+    template <class T> Vertex<T> operator()(VertexInput<T> const&, Vertex<T> v) const
+    {
+        v.position = v.position + v.position;
+        if (bent)
+            v.color = when(
+                v.position.x > T(0), [&]() -> float3<T> { return v.color + v.color; }, v.color);
+        return v;
+    }
+};
+
+// Runs after a miss are counted, whether or not they take place.
+TEST(PipelineStatistics, R42RunsAfterAMissCostWhatTheFirstDid)
+{
+    std::vector<float> const vertices = quad_vertices();
+    std::vector<std::uint32_t> indices;
+    for (int i = 0; i < 3; ++i) indices.insert(indices.end(), {0, 1, 2, 3});
+    for (bool bent : {false, true}) {
+        DrawCall call;
+        call.set_vertices(vertices, 7);
+        call.indices = std::span<std::uint32_t const>(indices);
+        GraphicsPipelineDesc d = patch_desc();
+        d.vertex_shader = bind_vertex_shader(Doubling{{}, bent}, {});
+        DrawOptions options;
+        options.vertex_cache = {VertexCacheModel::Kind::None, 0};
+        DrawStatistics const s =
+            draw(GraphicsPipeline(d), call, nullptr, {}, ThreadPool(1), options);
+        EXPECT_EQ(s.pipeline.VSInvocations, 12u);
+        auto const vs = std::find_if(s.stages.begin(), s.stages.end(), [](auto const& stage) {
+            return stage.stage == "vertex_shader";
+        });
+        ASSERT_NE(vs, s.stages.end());
+        // Of four vertices two lie right of the middle.
+        EXPECT_EQ(vs->flops.add, bent ? 12u * 4 + 6u * 3 : 12u * 4);
+        EXPECT_EQ(vs->flops.compare, bent ? 12u : 0u);
+        ASSERT_FALSE(vs->fetches.empty());
+        EXPECT_EQ(vs->fetches[0].count, 12u);
+        EXPECT_EQ(vs->fetches[0].unique_bytes, 4u * 28);
+    }
+}
+
 TEST(PipelineStatistics, R42I3NonIndexedVerticesNeverHitTheCache)
 {
     std::vector<float> vertices = quad_vertices();

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "emu/lanes.h"
+#include "emu/lane_memory.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace tessemu {
 namespace {
@@ -73,6 +74,41 @@ TYPED_TEST(LanesOf, EveryOperationEqualsTheScalarBitForBit)
     EXPECT_TRUE(ok);
 }
 
+// Where the compiler knows an operand there is another way to the same bits.
+template <class L, std::uint32_t kBits> void expect_same_with_constant(L a)
+{
+    float const c = std::bit_cast<float>(kBits);
+    L const least = min(a, L(c)), most = max(a, L(c)), least2 = min(L(c), a), most2 = max(L(c), a);
+    for (int i = 0; i < lanes_of<L>; ++i) {
+        float const x = a.raw[i];
+        EXPECT_TRUE(same(least.raw[i], tessemu::min(x, c))) << x << " " << c;
+        EXPECT_TRUE(same(most.raw[i], tessemu::max(x, c))) << x << " " << c;
+        EXPECT_TRUE(same(least2.raw[i], tessemu::min(c, x))) << x << " " << c;
+        EXPECT_TRUE(same(most2.raw[i], tessemu::max(c, x))) << x << " " << c;
+    }
+}
+TYPED_TEST(LanesOf, MinAndMaxWithAConstantEqualTheScalarBitForBit)
+{
+    using L = TypeParam;
+    for (DenormalMode::Kind mode : {DenormalMode::Keep, DenormalMode::Flush}) {
+        DenormalMode const set(mode);
+        for (float x : {0.0f, -0.0f, 1.0f, -1.0f, 2.0f, 0.5f, 1e-40f, -1e-40f, 0x1p-126f, INFINITY,
+                        -INFINITY, float(NAN), std::bit_cast<float>(0x7fa00000u)}) {
+            L a;
+            for (int i = 0; i < lanes_of<L>; ++i) a.raw[i] = i % 2 ? x : 0.25f;
+            expect_same_with_constant<L, 0x00000000>(a); // 0
+            expect_same_with_constant<L, 0x80000000>(a); // -0
+            expect_same_with_constant<L, 0x3f800000>(a); // 1
+            expect_same_with_constant<L, 0x3f7fffff>(a);
+            expect_same_with_constant<L, 0xbf800000>(a); // -1
+            expect_same_with_constant<L, 0x00800000>(a); // 2^-126
+            expect_same_with_constant<L, 0x00000001>(a); // a denormal
+            expect_same_with_constant<L, 0x7f800000>(a); // infinity
+            expect_same_with_constant<L, 0x7fc00000>(a); // NaN
+        }
+    }
+}
+
 TYPED_TEST(LanesOf, AConstantKeepsTheSignOfZero)
 {
     TypeParam const z(-0.0f);
@@ -88,6 +124,34 @@ TYPED_TEST(LanesOf, MaskBitsAreLanesInOrder)
     EXPECT_FALSE(any(Mask<N>::first(0)));
     EXPECT_TRUE(all(Mask<N>::first(N)));
     EXPECT_FALSE(all(Mask<N>::first(N - 1)));
+}
+
+TYPED_TEST(LanesOf, NegativeLanesAreBitsInOrder)
+{
+    constexpr int N = lanes_of<TypeParam>;
+    for (int n = 0; n < N; ++n) {
+        IntLanes<N> v(0x7fffffff);
+        v.raw[n] = n % 2 ? -1 : std::numeric_limits<std::int32_t>::min();
+        EXPECT_EQ(v.negative(), 1u << n);
+    }
+    EXPECT_EQ(IntLanes<N>(0).negative(), 0u);
+}
+
+TYPED_TEST(LanesOf, PairsAndRowsOfFourAreWhereTheyLie)
+{
+    constexpr int N = lanes_of<TypeParam>;
+    std::vector<float> memory(100);
+    std::vector<std::int32_t> codes(100);
+    for (std::size_t i = 0; i < memory.size(); ++i)
+        memory[i] = float(i) + 0.5f, codes[i] = std::int32_t(i);
+    IntLanes<N> index;
+    for (int l = 0; l < N; ++l) index.raw[l] = (l / 2 * 37) % 99 + l % 2;
+    Lanes<N> const pairs = load_pairs<N>(memory.data(), index);
+    IntLanes<N> const rows = load_rows_of_four<N>(codes.data() + 5, 19);
+    for (int l = 0; l < N; ++l) {
+        EXPECT_EQ(pairs.raw[l], memory[std::size_t(index.raw[l])]);
+        EXPECT_EQ(rows.raw[l], 5 + l / 4 * 19 + l % 4);
+    }
 }
 
 TYPED_TEST(LanesOf, IntegersWrap)

@@ -101,10 +101,13 @@ RC_GTEST_PROP(TableRows, AreWhatTheTextSays, ())
                     {1, rc::gen::element(std::numeric_limits<float>::infinity(), -0.0f,
                                          std::numeric_limits<float>::quiet_NaN())}}));
     };
-    t.weights = floats(std::size_t(t.inputs * t.rows));
-    t.points = floats(std::size_t(3 * t.inputs));
     t.masks = *rc::gen::container<std::vector<std::uint32_t>>(std::size_t(t.rows),
                                                               rc::gen::arbitrary<std::uint32_t>());
+    t.weights = floats(std::size_t(t.inputs * t.rows));
+    for (std::size_t i = 0; i < t.weights.size(); ++i)
+        if (!(t.masks[i % std::size_t(t.rows)] >> (i / std::size_t(t.rows)) & 1))
+            t.weights[i] = *rc::gen::element(0.0f, -0.0f);
+    t.points = floats(std::size_t(3 * t.inputs));
     std::vector<std::uint8_t> order(static_cast<std::size_t>(t.inputs));
     std::iota(order.begin(), order.end(), std::uint8_t(0));
     t.order = order;
@@ -121,8 +124,13 @@ RC_GTEST_PROP(TableRows, AreWhatTheTextSays, ())
     std::vector<int> idle_elsewhere = anywhere; // lanes that do not run may have any row
     for (int l = 0; l < N; ++l)
         if (!(active >> l & 1)) idle_elsewhere[std::size_t(l)] = 1 << 30;
-    std::vector<std::vector<int>> const groups{run_of_rows, among_n, anywhere, idle_elsewhere,
-                                               run_of_rows};
+    std::vector<int> pairs = anywhere;
+    for (std::size_t l = 0; l < N; l += 2) {
+        pairs[l] = std::min(pairs[l], t.rows - 2);
+        pairs[l + 1] = pairs[l] + 1;
+    }
+    std::vector<std::vector<int>> const groups{run_of_rows,    among_n, anywhere,
+                                               idle_elsewhere, pairs,   run_of_rows};
 
     auto const expected = run(t, groups, active, [](auto const& in, TableRows<N> const& rows) {
         return std::optional(text(in, rows));
