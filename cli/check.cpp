@@ -97,24 +97,25 @@ std::string closing_hint(SchemeInfo const& info, Parameters const& parameters)
     return "";
 }
 
-int run(CheckRequest const& o)
+int run(CheckRequest const& o, Session const& session)
 {
-    RunOutput out(o.run.json);
+    RunOutput out(o.run.json, session);
     OutputFile* const picture = o.output.empty() ? nullptr : &out.add(o.output);
     if (picture) picture_format(*picture); // or refuses
     keep_inputs(out, o.surface);
-    ThreadPool const threads(o.run.threads);
-    Job job = prepare(o.surface, "check", threads);
+    std::optional<ThreadPool> own;
+    ThreadPool const& threads = session.pool(o.run.threads, own);
+    Job job = prepare(o.surface, "check", threads, session);
     set_picture(job, o.picture, o.surface);
     std::string const hint =
-        join_hint(find_seams(job.surface.mesh->base_topology()), job.placement);
+        join_hint(find_seams(job.surface().mesh->base_topology()), job.placement);
     if (!hint.empty()) job.header.warnings.push_back(hint);
     WatertightSettings s;
     s.frame = job.frame;
     s.parity = float(job.placement.length_from_file(o.parity));
     s.rays = std::uint64_t(o.rays);
     s.list = 100000;
-    PlantedMistake const mistake = mistake_of(o, *job.surface.mesh);
+    PlantedMistake const mistake = mistake_of(o, *job.surface().mesh);
     std::unique_ptr<PatchMesh> mistaken;
     if (o.mistake != Mistake::None) mistaken = with_mistake(job.patches(), mistake, s.frame);
     PatchMesh const& patches = mistaken ? *mistaken : job.patches();
@@ -128,8 +129,8 @@ int run(CheckRequest const& o)
     c.emplace_back("break", std::string(name_of(o.mistake)));
     if (mistaken)
         c.emplace_back("break_face",
-                       std::int64_t(job.surface.mesh->base().file_face(mistake.face)) + 1);
-    ProgressBar bar;
+                       std::int64_t(job.surface().mesh->base().file_face(mistake.face)) + 1);
+    ProgressBar bar(session);
     s.progress = [&](std::size_t n, std::size_t all) { bar(n, all); };
     Stopwatch const clock;
     std::vector<CheckedVerdict> const verdicts = check_watertight(patches, s, threads);
@@ -139,11 +140,11 @@ int run(CheckRequest const& o)
     for (CheckedVerdict const& v : verdicts) rows.push_back(row_of(v));
     if (picture) write_image(draw_cracks(patches, s, verdicts, threads), *picture);
     out.finish([&] { return check_report(job.header, rows); }, check_table(rows, 3));
-    if (!hint.empty() && any_checked(verdicts)) print_warning(hint); // else an error says so
+    if (!hint.empty() && any_checked(verdicts)) session.warn(hint); // else an error says so
     if (!all_hold(verdicts)) {
         std::string const closing =
-            closing_hint(o.surface.model.scheme->info(), job.surface.parameters);
-        if (!closing.empty()) print_warning(closing);
+            closing_hint(o.surface.model.scheme->info(), job.surface().parameters);
+        if (!closing.empty()) session.warn(closing);
         return 1;
     }
     std::string const& model = o.surface.model.model;
@@ -184,9 +185,9 @@ void add_check(CommandLine& program)
     add_options(verb, o->picture);
     add_options(verb, o->surface);
     add_options(verb, o->run);
-    verb.runs([o, &verb] {
+    verb.runs([o, &verb](Session const& session) {
         if (o->mistake == Mistake::None) verb.needs({"--break-face"}, "--break");
-        return run(*o);
+        return run(*o, session);
     });
 }
 

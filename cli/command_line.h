@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <initializer_list>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,8 @@ class App;
 }
 
 namespace tessemu {
+
+struct Session;
 
 /// What a verb takes and does.
 ///
@@ -72,12 +75,24 @@ public:
     /// Throws Error where one of the options is given, which does nothing without `what`.
     void needs(std::initializer_list<char const*> names, std::string const& what) const;
     /// \param work  gives the exit status
-    void runs(std::function<int()> work) { work_ = std::move(work); }
+    void runs(std::function<int(Session const&)> work) { work_ = std::move(work); }
+
+    /// What a program that sets options by name knows of one.
+    struct OptionInfo {
+        std::string name; ///< as on the command line: "--tess", "MODEL"
+        bool repeated, flag, required;
+        std::optional<std::string> fallback;
+    };
+    std::vector<OptionInfo> options() const;
+    /// Parses a text. Throws Error, in which the option is called `label`.
+    void check(std::string const& name, std::string const& text, std::string const& label) const;
+    /// Once: with options as texts by name, each checked before; of a flag "true" or "false".
+    int run(std::map<std::string, std::vector<std::string>> const& options, Session const& session);
 
 private:
     friend class CommandLine;
     using Set = std::function<void(std::string const& text, std::string const& option)>;
-    enum class Values { One, OneEach, Many };
+    enum class Values { One, OneEach, Many, Flag };
     struct Syntax {
         std::string name, about;
         char const* type;
@@ -108,11 +123,12 @@ private:
         };
     }
     void add(Syntax syntax, Set set);
-    int parse_and_work() const;
+    int parse_and_work(Session const& session) const;
+    Option& find(std::string const& name) const;
 
     CLI::App& app_;
     std::vector<std::unique_ptr<Option>> options_;
-    std::function<int()> work_;
+    std::function<int(Session const&)> work_;
 };
 
 /// Text as it is.
@@ -126,12 +142,17 @@ public:
     CommandLine(std::string const& name, std::string_view version, std::string const& about);
     ~CommandLine();
 
+    /// \param name  of two words: of a group that add_group() made
     Verb& add_verb(std::string const& name, std::string const& about, std::string const& examples);
+    void add_group(std::string const& name, std::string const& about);
+    /// The only verb, of a program that has one.
+    Verb& verb() { return *verbs_.front(); }
     /// The exit status. Prints help, version, and an error as a line on standard error.
     int run(int argc, char const* const* argv);
 
 private:
     int parse_and_work(int argc, char const* const* argv);
+    bool show_help(std::vector<std::string> const& words) const;
 
     std::string name_, version_;
     std::unique_ptr<CLI::App> app_;

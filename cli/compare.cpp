@@ -19,12 +19,13 @@ struct CompareRequest {
     int level = 0;
 };
 
-int run(CompareRequest const& o)
+int run(CompareRequest const& o, Session const& session)
 {
-    RunOutput out(o.run.json);
+    RunOutput out(o.run.json, session);
     out.keep(o.model.model);
-    ThreadPool const threads(o.run.threads);
-    Job job = prepare(o.model, o.shading, "compare", threads);
+    std::optional<ThreadPool> own;
+    ThreadPool const& threads = session.pool(o.run.threads, own);
+    Job job = prepare(o.model, o.shading, "compare", threads, session);
     job.header.config.emplace_back("level", std::int64_t(o.level));
     Stopwatch const clock;
     SurfaceComparison const c = compare_with_limit(job.patches(), job.frame, o.level, threads);
@@ -57,7 +58,7 @@ void add_compare(CommandLine& program)
     add_options(verb, o->model);
     add_options(verb, o->shading);
     add_options(verb, o->run);
-    verb.runs([o] { return run(*o); });
+    verb.runs([o](Session const& session) { return run(*o, session); });
 }
 
 } // namespace tessemu

@@ -27,16 +27,17 @@ struct CostRequest {
     bool geometry_only = false;
 };
 
-int run(CostRequest o)
+int run(CostRequest o, Session const& session)
 {
-    RunOutput out(o.run.json);
+    RunOutput out(o.run.json, session);
     OutputFile* const picture = o.output.empty() ? nullptr : &out.add(o.output);
     if (picture) picture_format(*picture); // or refuses
     GpuModel const gpu = load_gpu_model(o.gpu);
     o.surface.vertex_cache = gpu.vertex_cache;
     keep_inputs(out, o.surface);
-    ThreadPool const threads(o.run.threads);
-    Job job = prepare(o.surface, "cost", threads);
+    std::optional<ThreadPool> own;
+    ThreadPool const& threads = session.pool(o.run.threads, own);
+    Job job = prepare(o.surface, "cost", threads, session);
     set_picture(job, o.picture, o.surface);
     FrameSettings const& f = job.frame;
     Config& c = job.header.config;
@@ -93,7 +94,7 @@ void add_cost(CommandLine& program)
     add_options(verb, o->picture);
     add_options(verb, o->surface);
     add_options(verb, o->run);
-    verb.runs([o] { return run(*o); });
+    verb.runs([o](Session const& session) { return run(*o, session); });
 }
 
 } // namespace tessemu

@@ -62,7 +62,7 @@ void add_diff(CommandLine& program)
                 "0");
     verb.flag("--all", o->all, "show equal values too");
     add_json(verb, o->json);
-    verb.runs([o] { return run(*o); });
+    verb.runs([o](Session const&) { return run(*o); });
 }
 
 } // namespace tessemu

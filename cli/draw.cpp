@@ -190,19 +190,19 @@ std::string curvature_legend(double range, PatchMesh const& patches)
 }
 
 // A camera that its user placed and that sees nothing is a mistake; else the picture may be so.
-void expect_something(bool covered, DrawRequest const& o, Job& job)
+void expect_something(bool covered, DrawRequest const& o, Job& job, Session const& session)
 {
     if (covered) return;
     std::string const what = "no pixel is covered: there is nothing to see";
     if (o.picture.camera.is_placed() && o.cull == CullMode::None)
         throw Error("--camera: " + what + "; 'auto' shows the whole model");
     job.header.warnings.push_back(what);
-    print_warning(what);
+    session.warn(what);
 }
 
-int run(DrawRequest const& o)
+int run(DrawRequest const& o, Session const& session)
 {
-    RunOutput out(o.run.json);
+    RunOutput out(o.run.json, session);
     std::vector<OutputFile*> const pictures = pictures_of(o, out);
     OutputFile* const picture = pictures.empty() ? nullptr : pictures[0];
     bool const cage = o.view.shows == ViewRequest::Shows::Cage;
@@ -212,8 +212,9 @@ int run(DrawRequest const& o)
             throw Error("--view curvature is of the smooth surface: it takes no --displace");
     }
     keep_inputs(out, o.surface);
-    ThreadPool const threads(o.run.threads);
-    Job job = prepare(o.surface, "draw", threads, cage ? refine_for_scheme : build_scheme);
+    std::optional<ThreadPool> own;
+    ThreadPool const& threads = session.pool(o.run.threads, own);
+    Job job = prepare(o.surface, "draw", threads, session, cage ? refine_for_scheme : build_scheme);
     set_picture(job, o.picture, o.surface);
     if (o.view.shows == ViewRequest::Shows::Error)
         return run_error_view(o, job, threads, picture, out);
@@ -238,7 +239,7 @@ int run(DrawRequest const& o)
     c.emplace_back("camera_focal", double(f.camera.focal));
     if (job.poses.size() > 1) c.emplace_back("frames", std::int64_t(job.poses.size()));
 
-    ProgressBar bar;
+    ProgressBar bar(session);
     Stopwatch const clock;
     std::string legend = in_words_of_levels(job.header.levels);
     if (!legend.empty()) legend += "\n";
@@ -254,7 +255,7 @@ int run(DrawRequest const& o)
     for (std::size_t i = 0; i < job.poses.size(); ++i) {
         f.pose = job.poses[i].pose;
         if (cage)
-            draw_cage(*job.surface.mesh, f, threads, frame);
+            draw_cage(*job.surface().mesh, f, threads, frame);
         else
             draw_frame(job.patches(), f, threads, frame, [&](std::size_t n, std::size_t all) {
                 bar(i * all + n, job.poses.size() * all);
@@ -270,7 +271,7 @@ int run(DrawRequest const& o)
         }
     }
     bar.clear();
-    expect_something(covered, o, job);
+    expect_something(covered, o, job, session);
     add_run(job.header, job, threads, clock.seconds());
     if (!sequence.empty()) {
         out.finish([&] { return sequence_report(job.header, sequence); },
@@ -283,11 +284,11 @@ int run(DrawRequest const& o)
     return 0;
 }
 
-void warn_of_unused(Verb const& verb, std::string const& view,
+void warn_of_unused(Verb const& verb, Session const& session, std::string const& view,
                     std::initializer_list<char const*> options)
 {
     for (char const* option : options)
-        if (verb.given(option)) print_warning(view + " does not use " + option);
+        if (verb.given(option)) session.warn(view + " does not use " + option);
 }
 
 } // namespace
@@ -335,20 +336,20 @@ void add_draw(CommandLine& program)
     add_options(verb, o->surface);
     add_vertex_cache(verb, o->surface);
     add_options(verb, o->run);
-    verb.runs([o, &verb] {
+    verb.runs([o, &verb](Session const& session) {
         using Shows = ViewRequest::Shows;
         if (o->view.shows != Shows::Error) verb.needs({"--error-max", "--level"}, "--view error");
         if (!o->shows(View::Curvature)) verb.needs({"--curvature-max"}, "--view curvature");
         // No error: one list of options may serve several views.
         if (o->view.shows == Shows::Error)
-            warn_of_unused(verb, "--view error",
+            warn_of_unused(verb, session, "--view error",
                            {"--tess", "--tess-edge", "--partitioning", "--samples", "--cull",
                             "--vertex-cache"});
         if (o->view.shows == Shows::Cage)
-            warn_of_unused(verb, "--view cage",
+            warn_of_unused(verb, session, "--view cage",
                            {"--tess", "--tess-edge", "--partitioning", "--normals", "--direct3d",
                             "--pattern"});
-        return run(*o);
+        return run(*o, session);
     });
 }
 

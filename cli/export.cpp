@@ -19,17 +19,18 @@ struct ExportRequest {
     bool weld = false;
 };
 
-int run(ExportRequest const& o)
+int run(ExportRequest const& o, Session const& session)
 {
-    RunOutput out(o.run.json);
+    RunOutput out(o.run.json, session);
     OutputFile& file = out.add(o.output);
     mesh_format(file); // or refuses
     keep_inputs(out, o.surface);
-    ThreadPool const threads(o.run.threads);
-    Job job = prepare(o.surface, "export", threads);
+    std::optional<ThreadPool> own;
+    ThreadPool const& threads = session.pool(o.run.threads, own);
+    Job job = prepare(o.surface, "export", threads, session);
     job.header.config.emplace_back("weld", o.weld);
-    MeshWriter writer(file, o.weld, job.placement, job.surface.mesh->base().file_faces);
-    ProgressBar bar;
+    MeshWriter writer(file, o.weld, job.placement, job.surface().mesh->base().file_faces);
+    ProgressBar bar(session);
     Stopwatch const clock;
     std::size_t all = 0, done = 0;
     for (PatchCount const& c : job.patches().patch_counts()) all += c.patches;
@@ -63,7 +64,7 @@ void add_export(CommandLine& program)
     add_options(verb, o->surface, NormalWords::AndDisplaced);
     add_vertex_cache(verb, o->surface);
     add_options(verb, o->run);
-    verb.runs([o] { return run(*o); });
+    verb.runs([o](Session const& session) { return run(*o, session); });
 }
 
 } // namespace tessemu

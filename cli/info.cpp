@@ -75,7 +75,7 @@ void add_info(CommandLine& program)
                          "  tessemu info jug\n  tessemu info cage.obj --json info.json");
     add_options(verb, o->model);
     add_json(verb, o->json);
-    verb.runs([o] { return run(*o); });
+    verb.runs([o](Session const&) { return run(*o); });
 }
 
 } // namespace tessemu

@@ -12,6 +12,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include <unistd.h>
@@ -24,13 +25,13 @@ void ProgressBar::clear()
     shown_ = false;
 }
 
-void ProgressBar::operator()(std::size_t done, std::size_t all)
+void ProgressBar::operator()(std::size_t done, std::size_t all, std::string const& note)
 {
-    if (!isatty(STDERR_FILENO) || clock_.seconds() < 1 || all == 0) return;
+    if (silent_ || !isatty(STDERR_FILENO) || clock_.seconds() < 1 || all == 0) return;
     int const width = 40, filled = int(std::uint64_t(width) * done / all);
-    print_message(fmt::format("\r[{}{}] {:3d} %", std::string(std::size_t(filled), '#'),
+    print_message(fmt::format("\r[{}{}] {:3d} %{}\033[K", std::string(std::size_t(filled), '#'),
                               std::string(std::size_t(width - filled), '.'),
-                              int(100 * std::uint64_t(done) / all)));
+                              int(100 * std::uint64_t(done) / all), note));
     shown_ = true;
 }
 
@@ -39,9 +40,43 @@ void print_warning(std::string const& warning)
     print_message("warning: " + warning + "\n");
 }
 
-Model open_model(std::string const& model)
+void Session::warn(std::string const& warning) const
 {
-    return load_model(model, print_warning);
+    if (!result) print_warning(warning); // else the result says it
+}
+
+Model open_model(std::string const& model, WarningSink const& warn)
+{
+    return load_model(model, warn);
+}
+
+std::shared_ptr<OpenSurface const> SurfaceStore::find(std::string const& key,
+                                                      std::function<OpenSurface()> const& make)
+{
+    std::promise<std::shared_ptr<OpenSurface const>> promise;
+    Future future;
+    bool is_first = false;
+    {
+        std::scoped_lock const lock(mutex_);
+        auto const at = std::find_if(entries_.begin(), entries_.end(),
+                                     [&](auto const& e) { return e.first == key; });
+        is_first = at == entries_.end();
+        if (is_first) {
+            entries_.emplace_front(key, promise.get_future().share());
+            if (entries_.size() > capacity_) entries_.pop_back(); // whoever uses it keeps it
+        } else {
+            entries_.splice(entries_.begin(), entries_, at);
+        }
+        future = entries_.front().second;
+    }
+    if (is_first) {
+        try {
+            promise.set_value(std::make_shared<OpenSurface const>(make()));
+        } catch (...) {
+            promise.set_exception(std::current_exception());
+        }
+    }
+    return future.get();
 }
 
 std::vector<std::string> without_folder(std::vector<std::string> warnings, std::string const& path)
@@ -91,27 +126,56 @@ Config config_of(ModelRequest const& o, Parameters const& parameters)
     return out;
 }
 
+namespace {
+
+// All that a surface hangs on.
+std::string key_of(ModelRequest const& o, MakeSurface& make)
+{
+    std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", o.model, o.scheme->info().name,
+                                  o.build.subdivide, o.build.join.value_or(-1), o.build.strict,
+                                  o.table_cache.value_or(""), make == build_scheme);
+    for (auto const& [name, value] : o.build.set) key += "\n" + name + "=" + value;
+    return key;
+}
+
+OpenSurface open_surface(ModelRequest const& o, ThreadPool const& threads, Session const& session,
+                         MakeSurface& make)
+{
+    auto const warn = [&](std::string const& warning) { session.warn(warning); };
+    OpenSurface out;
+    Stopwatch const load_clock;
+    Model model = open_model(o.model, warn);
+    out.load_seconds = load_clock.seconds();
+    out.path = model.lines.file;
+    out.placement = model.placement;
+    out.input = {model.name, model.sha256};
+    out.warnings = std::move(model.warnings);
+    Stopwatch const build_clock;
+    out.surface = build(std::move(model), o, threads, make, warn);
+    out.build_seconds = build_clock.seconds();
+    auto const& more = out.surface.warnings;
+    out.warnings.insert(out.warnings.end(), more.begin(), more.end());
+    out.warnings = without_folder(std::move(out.warnings), out.path);
+    return out;
+}
+
+} // namespace
+
 Job open_job(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
-             ThreadPool const& threads, MakeSurface& make)
+             ThreadPool const& threads, Session const& session, MakeSurface& make)
 {
     Job job;
     job.frame.machine = shading.machine();
     job.frame.true_normals = shading.normals != ShadingRequest::Normals::Frozen;
     job.poses.emplace_back();
-    Stopwatch const load_clock;
-    Model model = open_model(o.model);
-    job.load_seconds = load_clock.seconds();
-    job.path = model.lines.file;
-    job.placement = model.placement;
+    auto const open = [&] { return open_surface(o, threads, session, make); };
+    job.opened = session.surfaces ? session.surfaces->find(key_of(o, make), open)
+                                  : std::make_shared<OpenSurface const>(open());
+    job.path = job.opened->path;
+    job.placement = job.opened->placement;
     job.header.verb = verb;
-    job.header.inputs = {{model.name, model.sha256}};
-    job.header.warnings = std::move(model.warnings);
-    Stopwatch const build_clock;
-    job.surface = build(std::move(model), o, threads, make);
-    job.build_seconds = build_clock.seconds();
-    auto const& more = job.surface.warnings;
-    job.header.warnings.insert(job.header.warnings.end(), more.begin(), more.end());
-    job.header.warnings = without_folder(std::move(job.header.warnings), job.path);
+    job.header.inputs = {job.opened->input};
+    job.header.warnings = job.opened->warnings;
     return job;
 }
 
@@ -132,7 +196,7 @@ float diagonal_of(ControlMesh const& mesh)
 
 std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o, Job const& job)
 {
-    RefinedMesh const& mesh = *job.surface.mesh;
+    RefinedMesh const& mesh = *job.surface().mesh;
     using Kind = DisplaceRequest::Heights::Kind;
     auto const& [kind, path] = o.displace.heights;
     if (kind == Kind::None) return {};
@@ -148,7 +212,7 @@ std::shared_ptr<Displacement const> make_displacement(SurfaceRequest const& o, J
     } else {
         HeightImage image = read_height_image(path);
         try {
-            out = std::make_shared<Displacement>(job.surface.mesh, std::move(image), scale,
+            out = std::make_shared<Displacement>(job.surface().mesh, std::move(image), scale,
                                                  o.displace.wrap.value_or(HeightWrap::Repeat));
         } catch (Error const& e) {
             throw Error(job.path + ": " + e.what());
@@ -179,7 +243,7 @@ std::vector<FramePose> make_poses(AnimateRequest const& o, ControlMesh const& me
 // All that the frames will show, about.
 std::vector<glm::vec3> points_to_show(Job const& job, AnimateRequest const& animate)
 {
-    ControlMesh const& mesh = job.surface.mesh->base();
+    ControlMesh const& mesh = job.surface().mesh->base();
     std::vector<glm::vec3> points;
     for (FramePose const& f : make_poses(animate, mesh))
         for (std::size_t v = 0; v < mesh.positions.size(); ++v)
@@ -238,41 +302,41 @@ void keep_inputs(RunOutput const& out, SurfaceRequest const& o)
 }
 
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
-            ThreadPool const& threads)
+            ThreadPool const& threads, Session const& session)
 {
-    Job job = open_job(o, shading, verb, threads, build_scheme);
-    job.header.config = config_of(o, job.surface.parameters);
+    Job job = open_job(o, shading, verb, threads, session, build_scheme);
+    job.header.config = config_of(o, job.surface().parameters);
     add_config(job.header.config, shading);
     return job;
 }
 
 Job prepare(SurfaceRequest const& o, std::string const& verb, ThreadPool const& threads,
-            MakeSurface& make)
+            Session const& session, MakeSurface& make)
 {
     check_request(o);
-    Job job = open_job(o.model, o.shading, verb, threads, make);
+    Job job = open_job(o.model, o.shading, verb, threads, session, make);
     FrameSettings& f = job.frame;
     f.partitioning = o.partitioning.value_or(f.partitioning);
     f.tess_factor = float(o.tess.value_or(kDefaultTessFactor));
-    if (job.surface.patches) job.header.levels = job.surface.patches->level_counts();
+    if (job.surface().patches) job.header.levels = job.surface().patches->level_counts();
     bool const adaptive = !job.header.levels.empty();
     if (adaptive && o.tess) {
         job.header.warnings.push_back("--tess is not used: each patch has its own segments");
-        print_warning(job.header.warnings.back());
+        session.warn(job.header.warnings.back());
     }
     if (o.vertex_cache) f.vertex_cache = *o.vertex_cache;
     f.direct3d10 = o.direct3d10;
     f.pattern = o.pattern.value_or(f.pattern);
     bool const is_uniform = f.pattern == RefinementPattern::Uniform;
     f.displacement = make_displacement(o, job);
-    job.poses = make_poses(o.animate, job.surface.mesh->base());
+    job.poses = make_poses(o.animate, job.surface().mesh->base());
     f.pose = job.poses[0].pose;
 
     ReportHeader& h = job.header;
     DisplaceRequest::Heights const& heights = o.displace.heights;
     if (heights.kind == DisplaceRequest::Heights::Kind::Image)
         h.inputs.emplace_back(name_of(heights), sha256_of(read_file(heights.image)));
-    Config& c = h.config = config_of(o.model, job.surface.parameters);
+    Config& c = h.config = config_of(o.model, job.surface().parameters);
     if (!adaptive) c.emplace_back("tess", double(f.tess_factor));
     if (o.model.scheme->info().tessellator && !is_uniform)
         c.emplace_back("partitioning", std::string(name_of(f.partitioning)));
@@ -308,8 +372,8 @@ void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double 
 {
     h.run = {{"threads", std::int64_t(threads.threads())},
              {"lanes", std::int64_t(job.frame.machine.lanes)},
-             {"load_seconds", job.load_seconds},
-             {"build_seconds", job.build_seconds},
+             {"load_seconds", job.opened->load_seconds},
+             {"build_seconds", job.opened->build_seconds},
              {"draw_seconds", seconds}};
 }
 

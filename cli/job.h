@@ -10,6 +10,10 @@
 #include "io/report.h"
 
 #include <chrono>
+#include <functional>
+#include <future>
+#include <list>
+#include <mutex>
 
 namespace tessemu {
 
@@ -29,11 +33,14 @@ private:
 /// On a terminal, and only once the work has lasted a second.
 class ProgressBar {
 public:
+    explicit ProgressBar(Session const& session = {}) : silent_(session.result != nullptr) {}
     ~ProgressBar() { clear(); }
     void clear();
-    void operator()(std::size_t done, std::size_t all);
+    /// \param note  behind the bar
+    void operator()(std::size_t done, std::size_t all, std::string const& note = "");
 
 private:
+    bool silent_;
     Stopwatch clock_;
     bool shown_ = false;
 };
@@ -41,7 +48,7 @@ private:
 /// At once, so that a warning stands before the error that follows from it.
 void print_warning(std::string const& warning);
 /// A model as its warnings are printed.
-Model open_model(std::string const& model);
+Model open_model(std::string const& model, WarningSink const& warn = print_warning);
 /// Warnings of a file carry its path; a result must not.
 std::vector<std::string> without_folder(std::vector<std::string> warnings, std::string const& path);
 
@@ -50,17 +57,42 @@ struct FramePose {
     std::shared_ptr<Pose const> pose; ///< none: the mesh at rest
 };
 
-/// A model under a scheme, and what a verb draws it with.
-struct Job {
+/// A model under a scheme, and what is said of both.
+struct OpenSurface {
     SchemeOnMesh surface;
+    std::string path; ///< of the model, for messages
+    Placement placement;
+    std::pair<std::string, std::string> input; ///< name and SHA-256
+    std::vector<std::string> warnings;
+    double load_seconds = 0, build_seconds = 0;
+};
+
+/// Surfaces that several runs of a process share, each made once. Holds the last ones. Thread-safe.
+class SurfaceStore {
+public:
+    explicit SurfaceStore(std::size_t capacity) : capacity_(capacity) {}
+    /// What `make` gives, or throws, now or before.
+    std::shared_ptr<OpenSurface const> find(std::string const& key,
+                                            std::function<OpenSurface()> const& make);
+
+private:
+    using Future = std::shared_future<std::shared_ptr<OpenSurface const>>;
+    std::mutex mutex_;
+    std::size_t capacity_;
+    std::list<std::pair<std::string, Future>> entries_; // from the last used on
+};
+
+/// What a verb draws a surface with.
+struct Job {
+    std::shared_ptr<OpenSurface const> opened;
     FrameSettings frame;
     std::vector<FramePose> poses; ///< one at least
     ReportHeader header;
     std::string path;    ///< of the model, for messages
     Placement placement; ///< of the mesh in the model's file
-    double load_seconds = 0, build_seconds = 0;
 
-    PatchMesh const& patches() const { return *surface.patches; }
+    SchemeOnMesh const& surface() const { return opened->surface; }
+    PatchMesh const& patches() const { return *surface().patches; }
 };
 
 /// build_scheme, or refine_for_scheme for who needs no patches.
@@ -74,10 +106,10 @@ SchemeOnMesh build(Model model, ModelRequest const& o, ThreadPool const& threads
 Config config_of(ModelRequest const& o, Parameters const& parameters);
 /// The model, the machine, and a header without a configuration.
 Job open_job(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
-             ThreadPool const& threads, MakeSurface& make);
+             ThreadPool const& threads, Session const& session, MakeSurface& make);
 /// The model and its settings for shading.
 Job prepare(ModelRequest const& o, ShadingRequest const& shading, std::string const& verb,
-            ThreadPool const& threads);
+            ThreadPool const& threads, Session const& session);
 /// "patches by their segments: 12 of 1 segment, 3 of 2 segments" and a line's end; empty where
 /// patches have no levels of their own.
 std::string in_words_of_levels(std::vector<std::uint64_t> const& levels);
@@ -85,7 +117,7 @@ std::string in_words_of_levels(std::vector<std::uint64_t> const& levels);
 void keep_inputs(RunOutput const& out, SurfaceRequest const& o);
 /// With everything that verbs that tessellate share.
 Job prepare(SurfaceRequest const& o, std::string const& verb, ThreadPool const& threads,
-            MakeSurface& make = build_scheme);
+            Session const& session, MakeSurface& make = build_scheme);
 /// Size, factors and camera, which shows the model, displaced, as it moves through all frames.
 void set_picture(Job& job, PictureRequest const& o, SurfaceRequest const& surface);
 void add_run(ReportHeader& h, Job const& job, ThreadPool const& threads, double seconds);

@@ -33,7 +33,7 @@ std::string line_of(SchemeParameter const& p)
                        p.meaning);
 }
 
-int list_schemes()
+int list_schemes(Session const&)
 {
     std::string out;
     for (auto const& scheme : schemes()) {
@@ -52,7 +52,7 @@ int list_schemes()
     return 0;
 }
 
-int list_models()
+int list_models(Session const&)
 {
     std::string out;
     for (BuiltinModel const& m : builtin_models()) {

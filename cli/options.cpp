@@ -237,6 +237,19 @@ std::string parse_table_cache(std::string const& text, std::string const& option
     return text;
 }
 
+void add_table_cache(Verb& verb, std::optional<std::string>& folder)
+{
+    verb.option("--table-cache", folder, parse_table_cache,
+                "folder where a scheme's basis-function tables are kept from run to run, or none "
+                "[$XDG_CACHE_HOME/tessemu, else ~/.cache/tessemu]");
+}
+
+void add_lanes(Verb& verb, int& lanes)
+{
+    verb.option("--lanes", lanes, parse_lanes, "4, 8 or 16; changes no result",
+                std::to_string(kNativeLanes));
+}
+
 } // namespace
 
 void add_options(Verb& verb, ModelRequest& o)
@@ -265,9 +278,13 @@ void add_mesh_options(Verb& verb, ModelRequest& o, std::string const& parameters
                 "of length; 0 joins equal positions; the lowest number stays");
     verb.flag("--strict", o.build.strict,
               "refuse a mesh that would have to be cut or lose faces, instead of warning");
-    verb.option("--table-cache", o.table_cache, parse_table_cache,
-                "folder where a scheme's basis-function tables are kept from run to run, or none "
-                "[$XDG_CACHE_HOME/tessemu, else ~/.cache/tessemu]");
+    add_table_cache(verb, o.table_cache);
+}
+
+void add_machine_of_sweep(Verb& verb, int& lanes, std::optional<std::string>& table_cache)
+{
+    add_lanes(verb, lanes);
+    add_table_cache(verb, table_cache);
 }
 
 void add_options(Verb& verb, ShadingRequest& o, NormalWords offered)
@@ -288,8 +305,7 @@ void add_machine(Verb& verb, ShadingRequest& o)
 {
     verb.option("--contraction", o.products, parse_contraction,
                 "products that feed sums: none, all, mixed:SEED", "none");
-    verb.option("--lanes", o.lanes, parse_lanes, "4, 8 or 16; changes no result",
-                std::to_string(kNativeLanes));
+    add_lanes(verb, o.lanes);
 }
 
 void add_options(Verb& verb, SurfaceRequest& o, NormalWords words)

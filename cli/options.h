@@ -108,6 +108,8 @@ void add_options(Verb& verb, ShadingRequest& o, NormalWords words = NormalWords:
 void add_machine(Verb& verb, ShadingRequest& o);
 /// With the model's and the shading's.
 void add_options(Verb& verb, SurfaceRequest& o, NormalWords words = NormalWords::Smooth);
+/// --lanes, --table-cache of all cases of a sweep
+void add_machine_of_sweep(Verb& verb, int& lanes, std::optional<std::string>& table_cache);
 void add_options(Verb& verb, PictureRequest& o);
 void add_options(Verb& verb, RunRequest& o);
 void add_partitioning(Verb& verb, Partitioning& partitioning);

@@ -3,6 +3,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <vector>
+
 namespace tessemu {
 
 /// Call first, before there are threads.
@@ -15,5 +18,13 @@ void set_up_process();
 
 /// Closes standard output. False, with a message, where that shows that bytes are lost.
 bool close_standard_output();
+
+/// Another program to its end, its errors where ours go. Throws Error where it cannot be started, or
+/// ends otherwise than with status 0.
+/// \returns  what it prints
+std::string run_program(std::vector<std::string> const& words);
+
+/// Where this program's file is.
+std::string own_path();
 
 } // namespace tessemu

@@ -189,7 +189,7 @@ void add_reproduce(CommandLine& program)
                     return i.level ? fmt::format("{} [{}]", i.name, i.level) : "";
                 }));
     add_options(verb, o->run);
-    verb.runs([o] { return run(*o); });
+    verb.runs([o](Session const&) { return run(*o); });
 }
 
 } // namespace tessemu

@@ -18,7 +18,9 @@ void print_message(std::string_view text)
     std::fflush(stderr);
 }
 
-RunOutput::RunOutput(std::string const& json) : standard_output_("-")
+RunOutput::RunOutput(std::string const& json, Session const& session)
+    : result_(session.result),
+      standard_output_("-")
 {
     if (json.empty()) return;
     OutputFile file(json);
@@ -39,6 +41,9 @@ OutputFile& RunOutput::add(std::string const& path)
 {
     OutputFile file(path);
     refuse_same(file, "-o");
+    for (OutputFile const& other : files_)
+        if (file.is_same(other))
+            throw WriteError("'" + path + "' is where another result of the run goes");
     return files_.emplace_back(std::move(file));
 }
 

@@ -3,6 +3,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "cli/session.h"
 #include "io/output_file.h"
 
 #include <deque>
@@ -21,7 +22,7 @@ void print_message(std::string_view text);
 class RunOutput {
 public:
     /// \param json  a path, "-", or empty: no JSON
-    explicit RunOutput(std::string const& json = "");
+    explicit RunOutput(std::string const& json = "", Session const& session = {});
 
     /// Of -o. Throws WriteError where another result goes to the same place.
     OutputFile& add(std::string const& path);
@@ -33,6 +34,10 @@ public:
     /// \param json  makes it; hashes take their time
     template <class Json> void finish(Json&& json, std::string const& table)
     {
+        if (result_) {
+            *result_ = json();
+            return;
+        }
         close_files(); // a reader may take one pipe after another
         if (json_) json_->write(json());
         put_in_place(table);
@@ -43,6 +48,7 @@ private:
     void close_files();
     void put_in_place(std::string const& table);
 
+    std::string* result_; // of the session
     OutputFile standard_output_;
     std::optional<OutputFile> json_;
     std::deque<OutputFile> files_; // references to them stay

@@ -50,21 +50,22 @@ SubdivisionRow row_of(StepCost const& step)
     return out;
 }
 
-int run(SubdivideRequest const& o)
+int run(SubdivideRequest const& o, Session const& session)
 {
-    RunOutput out(o.run.json);
+    RunOutput out(o.run.json, session);
     OutputFile* const file = o.output.empty() ? nullptr : &out.add(o.output);
     bool const is_ply = file && mesh_format(*file) == MeshFormat::Ply; // or refuses
     out.keep(o.mesh.model);
-    ProgressBar bar;
+    ProgressBar bar(session);
     auto const progress = [&](std::size_t done, std::size_t all) { bar(done, all); };
     ModelRequest request = o.mesh;
     request.scheme = &find_scheme("gregory-stencil"); // whose masks these are
     request.build.progress = progress;
-    ThreadPool const threads(o.run.threads);
-    Job job = open_job(request, o.shading, "subdivide", threads, take_steps);
-    job.header.config = config_of(o, job.surface.parameters);
-    RefinedMesh const& refined = *job.surface.mesh;
+    std::optional<ThreadPool> own;
+    ThreadPool const& threads = session.pool(o.run.threads, own);
+    Job job = open_job(request, o.shading, "subdivide", threads, session, take_steps);
+    job.header.config = config_of(o, job.surface().parameters);
+    RefinedMesh const& refined = *job.surface().mesh;
     Stopwatch const clock;
     DrawnMesh const drawn = drawn_mesh(refined, job.frame, threads);
     add_run(job.header, job, threads, clock.seconds());
@@ -106,9 +107,9 @@ void add_subdivide(CommandLine& program)
                      "faces, or by the masks of positions, seams being boundaries [linear]");
     add_machine(verb, o->shading);
     add_options(verb, o->run);
-    verb.runs([o, &verb] {
+    verb.runs([o, &verb](Session const& session) {
         if (o->mesh.build.subdivide == 0) verb.needs({"--set"}, "--levels 1 or more");
-        return run(*o);
+        return run(*o, session);
     });
 }
 

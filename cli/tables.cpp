@@ -123,7 +123,7 @@ void add_tables(CommandLine& program)
                 "opensubdiv: its plain rules; biermann: Biermann's, with concave corners; both",
                 "both");
     add_options(verb, o->run);
-    verb.runs([o] { return run(*o); });
+    verb.runs([o](Session const&) { return run(*o); });
 }
 
 } // namespace tessemu

@@ -108,7 +108,7 @@ void add_tessellate(CommandLine& program)
         verb.exclude(name, "--batch"); // whose lines say it
     verb.option("-o,--json", o->output, output_path,
                 "file for the result instead of standard output");
-    verb.runs([o] { return run(*o); });
+    verb.runs([o](Session const&) { return run(*o); });
 }
 
 } // namespace tessemu

@@ -20,6 +20,7 @@ void add_cost(CommandLine& program);
 void add_reproduce(CommandLine& program);
 void add_diff(CommandLine& program);
 void add_info(CommandLine& program);
+void add_sweep(CommandLine& program);
 void add_schemes(CommandLine& program);
 void add_models(CommandLine& program);
 

@@ -8,8 +8,8 @@
 // held at any time of the draw fails in order too, and need not be shaded (R163, I-16). It counts as
 // covered.
 //
-// On the geometry side: set-up and rejection with lanes over triangles, coverage in blocks of 4x4
-// pixels, fragments dropped that lie behind what earlier waves left, attributes fetched once a triangle
+// On the geometry side: set-up and rejection with lanes over triangles, coverage in units of
+// N pixels, fragments dropped that lie behind what earlier waves left, attributes fetched once a triangle
 // that is left, fragments shaded in dense groups and sorted into tiles. On the raster side, tile by
 // tile: the depth test in submission order.
 //
@@ -90,6 +90,7 @@ private:
         explicit GroupRows(Group const& g) { __builtin_memcpy(this, &g, sizeof g); }
         std::int32_t edge[3][N], step_x[3][N], step_y[3][N], corner[N], columns[N], rows[N];
     };
+    static_assert(sizeof(GroupRows) == sizeof(Group));
     void cover_pixels(std::size_t first, std::uint32_t valid, Group const& g);
     static I cover_blocks(Group const& g, std::uint32_t small);
     void cover_large(std::size_t survivor, GroupRows const& g, int lane);

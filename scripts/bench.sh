@@ -7,7 +7,7 @@ source "$(dirname "$0")/setup.sh"
 install_packages scripts/peer_packages.txt
 cmake --preset release -DTESSEMU_BUILD_BENCH=ON -DTESSEMU_BUILD_PEERS=ON >/dev/null
 cmake --build --preset release --target bench_draw bench_domain_shader bench_tessellator bench_memory \
-    bench_schemes bench_subdivision peer_llvmpipe peer_embree peer_opensubdiv peer_opensubdiv_subdivision >/dev/null
+    bench_schemes bench_subdivision bench_sweep peer_llvmpipe peer_embree peer_opensubdiv peer_opensubdiv_subdivision >/dev/null
 bin=build/release/bench
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
@@ -31,6 +31,8 @@ ours() {
     "$bin/bench_schemes" --benchmark_min_time=0.3 2>/dev/null |
         awk '/Mpoint/ { for (i = 2; i <= NF; ++i) if ($i ~ /^Mpoint/) { split($i, v, "="); print "our scheme", $1, 1, rate(v[2]) } }
              function rate(s) { sub("/s", "", s); if (s ~ /m$/) { sub("m", "", s); return s / 1000 } if (s ~ /k$/) { sub("k", "", s); return s * 1000 } return s + 0 }'
+    "$bin/bench_sweep" --benchmark_min_time=0.1 2>/dev/null |
+        awk '/^(draws_alone|sweep_run)/ { split($1, a, "/"); print "our sweep", a[1], 1, $2 }'
     "$bin/bench_tessellator" --benchmark_min_time=0.3 2>/dev/null |
         awk '{ for (i = 2; i <= NF; ++i) if ($i ~ /^Mpoint/) { split($i, v, "="); sub("/s", "", v[2]); print "our tessellator", $1, 1, v[2] } }'
 }
@@ -88,6 +90,7 @@ awk '
             row(schemes[i] ", points with normals : OpenSubdiv CpuEvaluator", median(key), median("opensubdiv evaluation 10"), "Mpoint/s", 1)
             row(schemes[i] ", points with normals : Embree rtcInterpolateN", median(key), median("embree evaluation 10"), "Mpoint/s", 1)
         }
+        row("1,000 cases of geometry, 1 thread : their draws alone", median("our sweep sweep_run 1"), median("our sweep draws_alone 1"), "ms", 0)
         for (key in values) if (key ~ /our tessellator/) { split(key, k, " "); printf "%-52s %10.2f %10s Mpoint/s\n", "tessellator " k[3], median(key), "" }
     }' "$log"
 "$bin/bench_memory" || true

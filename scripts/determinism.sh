@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Compares the hashes of what the program gives in several builds: five cages drawn and exported by
 # the default scheme, every scheme on a closed cage that it takes, displaced, animated, with adaptive
-# factors, by the Direct3D 10 path and compared with the limit surface.
+# factors, by the Direct3D 10 path and compared with the limit surface; and a sweep's table.
 #   determinism.sh            builds with g++ and clang at -O0 and -O2; the five cages with -j 1, 2, 3,
 #                             8, each with lanes 4, 8, 16, the rest with three pairs of both
 #   determinism.sh FOLDER...  these builds as they are, everything with the three pairs; of a build
@@ -112,6 +112,19 @@ run_schemes() { # folder, threads, lanes
     done
 }
 
+run_sweep() { # folder, threads, lanes: the merged table, byte by byte
+    local sweep=build/determinism/sweep
+    rm -rf "$sweep"
+    cat >"$sweep.json" <<'JSON'
+{"verb": "draw", "models": ["golem", "polygons.obj"], "schemes": ["gregory-stencil", "stam", "pm"],
+ "tess": [1, 5.3], "size": "64x64", "contraction": ["none", "mixed:7"]}
+JSON
+    "$1/tessemu" sweep plan "$sweep.json" -o "$sweep" >/dev/null
+    "$1/tessemu" sweep run "$sweep" -j "$2" --lanes "$3" >/dev/null 2>&1 || true # pm takes no polygon
+    check "sweep" "$("$1/tessemu" sweep merge "$sweep" -o "$sweep.csv" >/dev/null 2>&1 &&
+        sha256sum <"$sweep.csv")" "$1 -j $2 --lanes $3"
+}
+
 compare_build() { # folder, whether the five cages run with every pair
     local widths run threads lanes
     widths=$(lanes_of "$1")
@@ -124,6 +137,7 @@ compare_build() { # folder, whether the five cages run with every pair
         read -r threads lanes <<<"$run"
         grep -qx "$lanes" <<<"$widths" || continue
         run_schemes "$1" "$threads" "$lanes"
+        run_sweep "$1" "$threads" "$lanes"
         [ "$2" = all ] || run_cages "$1" "$threads" "$lanes"
     done
     [ "$2" = all ] || return 0
