@@ -119,11 +119,21 @@ int plan(PlanRequest const& o)
             if (option == "gpu") load_gpu_model(path.string());
             return std::pair(path.filename().string(), read_file(path));
         } catch (Error const& e) {
-            throw FormatError(name, 0, fmt::format("\"{}\": {}", option, e.what()));
+            throw FormatError(
+                name, 0,
+                fmt::format("\"{}{}\": {}", option, option == "model" ? "s" : "", e.what()));
         }
     };
-    SweepPlan const plan =
-        plan_sweep(sweep, sweep_verb(sweep.verb), std::string(tessemu_version()), find_input);
+    SweepPlan const plan = [&] {
+        try {
+            return plan_sweep(sweep, sweep_verb(sweep.verb), std::string(tessemu_version()),
+                              find_input);
+        } catch (FormatError const&) {
+            throw;
+        } catch (Error const& e) {
+            throw FormatError(name, 0, e.what());
+        }
+    }();
     if (plan.manifest.cases.empty()) throw FormatError(name, 0, "\"except\" leaves out every case");
     write_plan(plan, o.folder, text);
     std::string const repeated =
@@ -160,6 +170,7 @@ void check_plan(SweepManifest const& m, fs::path const& folder)
         throw Error(fmt::format("{}: planned by version {}, this is {}; results of both would mix: "
                                 "plan it again into another folder",
                                 folder.string(), m.version, tessemu_version()));
+    check_ids(m, folder);
     for (SweepInput const& i : m.inputs)
         if (sha256_of(read_file(folder / i.path)) != i.sha256)
             throw FormatError((folder / i.path).string(), 0,
@@ -228,6 +239,7 @@ int run(RunSweepRequest const& o)
     settings.lease = o.lease;
     settings.retry = o.retry;
     settings.run_case = [&](SweepCase const& c) { return run_case(manifest, c, o, session); };
+    std::string waits_for;
     settings.progress = [&](SweepProgress const& p) {
         double const rate = double(p.state.computed) / std::max(clock.seconds(), 1e-3);
         std::string note =
@@ -239,11 +251,16 @@ int run(RunSweepRequest const& o)
                                 duration(double(p.state.open()) / rate));
         if (p.state.failed) note += fmt::format(", {} failed", p.state.failed);
         bar(p.state.cases - p.state.open(), p.state.cases, note);
+        if (p.waits_for.empty() || p.waits_for == waits_for) return;
+        waits_for = p.waits_for;
+        bar.clear();
+        print_message(fmt::format("waiting for {}, which computes what is left\n", waits_for));
     };
     SweepState const state = run_sweep(manifest, o.folder, settings);
     bar.clear();
-    print(fmt::format("{} of {} cases done, {} failed; {} have run now\n", state.done, state.cases,
-                      state.failed, state.computed));
+    print(fmt::format("{} of {} cases{} done, {} failed; {} have run now\n", state.done,
+                      state.cases, o.shard.count > 1 ? " of the shard" : "", state.failed,
+                      state.computed));
     if (state.failed)
         print_message(
             fmt::format("'tessemu sweep status {}' says why; --retry runs them again\n", o.folder));
@@ -283,13 +300,33 @@ struct MergeRequest {
     std::string folder, output, dictionary;
 };
 
+// What is there already may be an older table, no sweep and nothing of one.
+void keep_sweep(std::string const& output, std::string const& folder)
+{
+    std::error_code none;
+    fs::path const path = fs::weakly_canonical(output, none),
+                   inside = fs::weakly_canonical(folder, none);
+    if (std::mismatch(inside.begin(), inside.end(), path.begin(), path.end()).first == inside.end())
+        throw WriteError("'" + output + "' is inside of the sweep; choose a place beside it");
+    if (extension_of(path) == "json" && fs::exists(path, none) &&
+        read_file(path).find("tessemu.sweep_table/1") == std::string::npos)
+        throw WriteError("'" + output + "' is there and is no table of a sweep");
+}
+
 int merge(MergeRequest const& o)
 {
+    TableFormat const format = table_format(o.output);
+    keep_sweep(o.output, o.folder);
+    if (!o.dictionary.empty()) {
+        if (extension_of(o.dictionary) != "csv")
+            refuse(o.dictionary, "--dictionary", "a name that ends in .csv");
+        keep_sweep(o.dictionary, o.folder);
+    }
     RunOutput out;
     OutputFile& file = out.add(o.output);
-    TableFormat const format = table_format(o.output);
     OutputFile* const dictionary = o.dictionary.empty() ? nullptr : &out.add(o.dictionary);
     SweepManifest const manifest = read_manifest(o.folder);
+    check_ids(manifest, o.folder);
     SweepMerge const merged = merge_sweep(manifest, o.folder);
     SweepTable const& table = merged.table;
     file.write(format == TableFormat::Csv    ? csv_of(table)
@@ -330,7 +367,9 @@ int submit(SubmitRequest const& o)
     SlurmJob job{own_path(), fs::canonical(o.folder), o.tasks, {}, o.options};
     if (job.tasks == 0) job.tasks = std::clamp<std::size_t>(open / manifest.per_block, 1, 16);
     if (!o.table.empty()) {
-        table_format(o.table);
+        table_format(o.table, "--merge");
+        keep_sweep(o.table, o.folder);
+        OutputFile const can_be_written(o.table); // or says why not
         job.table = fs::absolute(o.table);
     }
     std::string const array = slurm_array_script(job);

@@ -171,6 +171,12 @@ struct Claims::Impl {
         return seconds_of(status.st_mtim);
     }
 
+    bool is_own(Claim const& c) const
+    {
+        return c.process && c.process->system == self.system && c.process->pid == self.pid &&
+               c.process->start == self.start;
+    }
+
     bool has_lapsed(Claim const& c) const
     {
         if (c.process && c.process->system == self.system) return !c.process->is_alive();
@@ -241,11 +247,15 @@ bool Claims::take(std::size_t block)
 {
     std::scoped_lock const lock(impl_->mutex);
     if (impl_->own.count(block)) return false; // another thread's
-    // A first generation stays until the last one is given back.
-    if (impl_->make(block, 0)) return true;
     std::optional<Impl::Claim> const held = impl_->latest(block);
-    if (held && !impl_->has_lapsed(*held)) return false;
-    return impl_->make(block, held ? held->generation + 1 : 0);
+    if (!held) return impl_->make(block, 0);
+    if (!impl_->has_lapsed(*held) || !impl_->make(block, held->generation + 1)) return false;
+    // Whoever took it over, did it and gave it back before us has removed what we saw.
+    std::error_code none;
+    if (fs::exists(held->path, none)) return true;
+    unlink(impl_->path_of(block, held->generation + 1).c_str());
+    impl_->own.erase(block);
+    return false;
 }
 
 void Claims::give_back(std::vector<std::size_t> const& blocks)
@@ -256,7 +266,8 @@ void Claims::give_back(std::vector<std::size_t> const& blocks)
         if (at == impl_->own.end()) continue;
         // Of a block that another took over meanwhile nothing: the first generation is what bars it.
         auto const held = impl_->latest(block);
-        if (held && held->generation <= at->second) impl_->remove(block, held->generation);
+        if (held && held->generation == at->second && impl_->is_own(*held))
+            impl_->remove(block, held->generation);
         impl_->own.erase(at);
     }
 }

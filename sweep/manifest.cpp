@@ -41,6 +41,27 @@ CaseOptions to_options(Json const& j)
     return out;
 }
 
+// \param options  all, with inputs by their names; \param hashes  of inputs by option
+std::string id_of(SweepManifest const& m, CaseOptions const& options, Json const& hashes)
+{
+    return sha256_of(Json{
+        {"version", m.version}, {"verb", m.verb}, {"options", to_json(options)}, {"inputs", hashes}}
+                         .dump());
+}
+
+std::string id_of(SweepManifest const& m, SweepCase const& c)
+{
+    CaseOptions options = m.resolved(c);
+    Json hashes = Json::object();
+    for (auto& [name, texts] : options)
+        for (std::string& text : texts)
+            if (SweepInput const* const input = m.input(text)) {
+                hashes[name] = input->sha256;
+                text = input->name;
+            }
+    return id_of(m, options, hashes);
+}
+
 } // namespace
 
 CaseOptions SweepManifest::resolved(SweepCase const& c) const
@@ -67,21 +88,17 @@ SweepPlan plan_sweep(Sweep const& sweep, SweepVerb const& verb, std::string cons
     for (SweepVerb::Option const& o : verb.options)
         if (!o.fallback.empty()) m.defaults[o.name] = o.fallback;
 
-    // What an option's text becomes in the folder, and its hash where it is an input.
-    struct Place {
-        std::string text, name, sha256;
-    };
-    std::unordered_map<std::string, Place> places;
-    auto const place = [&](std::string const& option, std::string const& text) -> Place const& {
-        auto const [at, fresh] = places.try_emplace(option + '\n' + text);
+    std::unordered_map<std::string, std::string>
+        places; // what an option's text becomes in the folder
+    auto const place = [&](std::string const& option,
+                           std::string const& text) -> std::string const& {
+        auto const [at, fresh] = places.try_emplace(option + '\n' + text, text);
         if (!fresh) return at->second;
-        at->second = {text, text, ""};
         if (auto const file = find_input(option, text)) {
             std::string const hash = sha256_of(file->second);
-            std::string const path = "inputs/" + hash.substr(0, 16) + "/" + file->first;
-            at->second = {path, file->first, hash};
-            if (!m.input(path)) {
-                m.inputs.push_back({file->first, path, hash});
+            at->second = "inputs/" + hash.substr(0, 16) + "/" + file->first;
+            if (!m.input(at->second)) {
+                m.inputs.push_back({file->first, at->second, hash});
                 out.bytes.push_back(file->second);
             }
         }
@@ -90,21 +107,9 @@ SweepPlan plan_sweep(Sweep const& sweep, SweepVerb const& verb, std::string cons
     std::unordered_set<std::string> seen;
     for (CaseOptions const& options : cases_of(sweep)) {
         SweepCase c{"", options};
-        CaseOptions named = m.resolved(c); // with inputs by name and hash, not by path
-        Json hashes = Json::object();
         for (auto& [option, texts] : c.options)
-            for (std::size_t i = 0; i < texts.size(); ++i) {
-                Place const& p = place(option, texts[i]);
-                if (!p.sha256.empty()) hashes[option] = p.sha256;
-                named[option][i] = p.name;
-                texts[i] = p.text;
-            }
-        c.id = sha256_of(Json{
-            {"version", version},
-            {"verb", verb.name},
-            {"options", to_json(named)},
-            {"inputs",
-             hashes}}.dump());
+            for (std::string& text : texts) text = place(option, text);
+        c.id = id_of(m, c);
         if (seen.insert(c.id).second)
             m.cases.push_back(std::move(c));
         else
@@ -202,6 +207,14 @@ SweepManifest read_manifest(std::filesystem::path const& folder)
                           fmt::format("the manifest has {} of {} cases: plan the sweep again",
                                       out.cases.size(), all));
     return out;
+}
+
+void check_ids(SweepManifest const& manifest, std::filesystem::path const& folder)
+{
+    for (SweepCase const& c : manifest.cases)
+        if (c.id != id_of(manifest, c))
+            throw FormatError((folder / kManifest).string(), 0,
+                              "case " + c.id + " is not what was planned: plan the sweep again");
 }
 
 } // namespace tessemu

@@ -70,6 +70,10 @@ void write_plan(SweepPlan const& plan, std::filesystem::path const& folder,
 /// Throws FormatError for a folder without a manifest, or with one that is damaged.
 SweepManifest read_manifest(std::filesystem::path const& folder);
 
+/// Throws FormatError where a case's options are not those that it is named by.
+/// \cost  some microseconds a case
+void check_ids(SweepManifest const& manifest, std::filesystem::path const& folder);
+
 /// A part of a sweep's blocks: each `count`th from `index` - 1 on.
 struct Shard {
     std::size_t index = 1, count = 1; ///< index from 1

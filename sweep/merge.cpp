@@ -123,7 +123,17 @@ public:
                         to_cell(n));
             } else if (key == "stages") {
                 stages(value);
+            } else if (key == "warnings") {
+                std::vector<std::string> const texts = value;
+                table_.set({"warnings", "text", "of the case"},
+                           texts.empty() ? SweepTable::Cell()
+                                         : fmt::format("{}", fmt::join(texts, "; ")));
             } else if (key == "verdicts") {
+                bool fails = false;
+                for (auto const& [name, v] : value.items())
+                    fails = fails || v.value("verdict", "") == "fail";
+                table_.set({"verdict", "text", "fail where one of the checks fails, else pass"},
+                           std::string(fails ? "fail" : "pass"));
                 for (auto const& [name, v] : value.items()) leaves(name, "check of " + name, v);
             } else if (key == "errors") {
                 for (Json const& e : value) error(e);
@@ -188,6 +198,14 @@ private:
 
     Table& table_;
 };
+
+// Its name, with the beginning of its hash where another input has the same.
+std::string told_apart(SweepManifest const& m, SweepInput const& input)
+{
+    auto const same = std::count_if(m.inputs.begin(), m.inputs.end(),
+                                    [&](SweepInput const& i) { return i.name == input.name; });
+    return same > 1 ? input.name + " " + input.sha256.substr(0, 8) : input.name;
+}
 
 std::string joined(std::vector<std::string> const& texts)
 {
@@ -269,7 +287,8 @@ SweepMerge merge_sweep(SweepManifest const& manifest, std::filesystem::path cons
         for (std::string const& o : options) {
             auto const own = resolved.find(o);
             std::string text = own == resolved.end() ? "" : joined(own->second);
-            if (SweepInput const* const input = manifest.input(text)) text = input->name;
+            if (SweepInput const* const input = manifest.input(text))
+                text = told_apart(manifest, *input);
             table.set({slug(o), "option", o == "model" ? "the model" : "option --" + o},
                       option_cell(text));
         }
@@ -293,13 +312,14 @@ SweepMerge merge_sweep(SweepManifest const& manifest, std::filesystem::path cons
     return out;
 }
 
-TableFormat table_format(std::filesystem::path const& path)
+TableFormat table_format(std::filesystem::path const& path, std::string const& option)
 {
     std::string const extension = extension_of(path);
     if (extension == "csv") return TableFormat::Csv;
     if (extension == "json") return TableFormat::Json;
     if (extension == "sqlite") return TableFormat::Sqlite;
-    throw Error("-o is '" + path.string() + "', its name must end in .csv, .json or .sqlite");
+    throw Error(option + " is '" + path.string() +
+                "', its name must end in .csv, .json or .sqlite");
 }
 
 std::string csv_of(SweepTable const& t)

@@ -32,8 +32,8 @@ struct SweepMerge {
 SweepMerge merge_sweep(SweepManifest const& manifest, std::filesystem::path const& folder);
 
 enum class TableFormat { Csv, Json, Sqlite };
-/// By the extension: .csv, .json, .sqlite. Throws Error that names them.
-TableFormat table_format(std::filesystem::path const& path);
+/// By the extension: .csv, .json, .sqlite. Throws Error that names them and the option.
+TableFormat table_format(std::filesystem::path const& path, std::string const& option = "-o");
 
 /// RFC 4180, with a head line; numbers in their shortest form that reads back the same.
 std::string csv_of(SweepTable const& table);

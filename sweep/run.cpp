@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sweep/run.h"
 
+#include "io/output_file.h"
 #include "sweep/results.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -98,6 +100,7 @@ public:
     Run(SweepManifest const& manifest, std::filesystem::path const& folder,
         SweepRunSettings const& settings)
         : manifest_(manifest),
+          folder_(made(folder)),
           settings_(settings),
           cases_(manifest, folder, settings.shard),
           claims_(folder / "claims", settings.lease),
@@ -120,7 +123,10 @@ public:
         claims_.clear_lapsed([&](std::size_t block) {
             return block >= manifest_.blocks() || cases_.open_cases(block).empty();
         });
-        SweepState out = cases_.counts();
+        SweepState out = sweep_state(manifest_, folder_, settings_.shard);
+        if (out.open() > 0)
+            throw WriteError(fmt::format("{}: results of {} cases were there and are gone",
+                                         (folder_ / "results").string(), out.open()));
         out.computed = computed_;
         return out;
     }
@@ -210,7 +216,19 @@ private:
         if (settings_.progress) settings_.progress({state, waits_for});
     }
 
+    // Archives drop empty folders.
+    static std::filesystem::path made(std::filesystem::path const& folder)
+    {
+        for (char const* name : {"results", "claims"}) {
+            std::error_code error;
+            std::filesystem::create_directories(folder / name, error);
+            if (error) throw WriteError((folder / name).string() + ": " + error.message());
+        }
+        return folder;
+    }
+
     SweepManifest const& manifest_;
+    std::filesystem::path folder_;
     SweepRunSettings const& settings_;
     std::mutex mutex_; // of all below, but claims and log, which have their own
     Cases cases_;

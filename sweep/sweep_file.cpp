@@ -223,6 +223,7 @@ std::vector<CaseOptions> cases_of(Sweep const& sweep)
         all *= a.values.size();
         if (all > kMostCases) throw LimitError("cases of the sweep", all, kMostCases);
     }
+    std::vector<bool> used(sweep.except.size());
     for (std::uint64_t i = 0; i < all; ++i) {
         CaseOptions c;
         std::uint64_t rest = i;
@@ -237,9 +238,15 @@ std::vector<CaseOptions> cases_of(Sweep const& sweep)
                        std::find(a.values.begin(), a.values.end(), own->second) != a.values.end();
             });
         };
-        if (std::none_of(sweep.except.begin(), sweep.except.end(), matches))
-            out.push_back(std::move(c));
+        bool left_out = false;
+        for (std::size_t e = 0; e < sweep.except.size(); ++e)
+            if (matches(sweep.except[e])) left_out = used[e] = true;
+        if (!left_out) out.push_back(std::move(c));
     }
+    for (std::size_t e = 0; e < used.size(); ++e)
+        if (!used[e])
+            throw Error(
+                fmt::format("number {} of \"except\" leaves out no case of the grid", e + 1));
     out.insert(out.end(), sweep.cases.begin(), sweep.cases.end());
     return out;
 }

@@ -64,7 +64,8 @@ Sweep read_sweep(std::string_view text, std::string const& file,
 /// At most so many combinations.
 inline constexpr std::uint64_t kMostCases = 10'000'000;
 
-/// All cases in order: the grid's, but for exceptions, then the single ones. Throws LimitError.
+/// All cases in order: the grid's, but for exceptions, then the single ones. Throws LimitError, and
+/// Error for an exception that is none.
 std::vector<CaseOptions> cases_of(Sweep const& sweep);
 
 } // namespace tessemu

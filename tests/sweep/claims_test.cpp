@@ -11,7 +11,6 @@
 #include <thread>
 
 #include <signal.h>
-#include <sys/file.h>
 
 namespace tessemu {
 namespace {
@@ -248,20 +247,50 @@ TEST(Claims, AFolderThatIsNotThereIsNamed)
     EXPECT_NE(test::refusal([&] { claims.take(0); }).find(folder.string()), std::string::npos);
 }
 
-// Takes blocks and gives them back; what a holder of one locks, no other may hold.
+// Whether a process ends: its first thread has, others may still be about to.
+bool is_ending(pid_t pid)
+{
+    std::ifstream in(fmt::format("/proc/{}/stat", pid));
+    std::string stat;
+    std::getline(in, stat);
+    return stat.empty() || stat.find(") Z ") != std::string::npos;
+}
+
+// A file that whoever holds the block locks. Throws where another living process holds it.
+class LockedFile {
+public:
+    explicit LockedFile(fs::path const& path)
+        : file_(open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666))
+    {
+        struct flock lock = {};
+        lock.l_type = F_WRLCK;
+        lock.l_whence = SEEK_SET;
+        while (fcntl(file_, F_SETLK, &lock) != 0) {
+            struct flock other = lock;
+            fcntl(file_, F_GETLK, &other);
+            if (other.l_type != F_UNLCK && !is_ending(other.l_pid))
+                throw Error("two hold one block");
+        }
+    }
+    ~LockedFile() { close(file_); }
+    LockedFile(LockedFile const&) = delete;
+
+private:
+    int file_;
+};
+
+// Takes blocks and gives them back.
 void take_and_give_back(fs::path const& folder, int blocks, int rounds)
 {
     Claims claims(folder / "claims", kLong);
     for (int round = 0; round < rounds; ++round)
         for (int b = 0; b < blocks; ++b) {
             if (!claims.take(std::size_t(b))) continue;
-            fs::path const path = folder / std::to_string(b);
-            int const file = open(path.c_str(), O_CREAT | O_WRONLY | O_CLOEXEC, 0666);
-            if (flock(file, LOCK_EX | LOCK_NB) != 0) throw Error("two hold one block");
-            test::append_byte(folder / (std::to_string(b) + ".taken"));
-            std::this_thread::yield();
-            flock(file, LOCK_UN);
-            close(file);
+            {
+                LockedFile const lock(folder / std::to_string(b));
+                test::append_byte(folder / (std::to_string(b) + ".taken"));
+                std::this_thread::yield();
+            }
             claims.give_back({std::size_t(b)});
         }
 }
@@ -284,7 +313,7 @@ TEST(Claims, OneHoldsABlockWhileOthersDie)
     fs::path const folder = scratch();
     fs::create_directory(folder / "claims");
     std::mt19937 random(7);
-    pid_t const survivor = spawn([&] { take_and_give_back(folder, 4, 2000); });
+    pid_t const survivor = spawn([&] { take_and_give_back(folder, 4, 1500); });
     for (int i = 0; i < 60; ++i) {
         pid_t const victim = spawn([&] { take_and_give_back(folder, 4, 1000000); });
         std::this_thread::sleep_for(std::chrono::microseconds(random() % 8000));

@@ -94,9 +94,8 @@ TEST(SweepFile, AnExceptionLeavesOutWhatHasOneOfItsValuesForEachOfItsOptions)
     EXPECT_EQ(cases(R"({"verb": "toy", "models": ["a", "b"], "tess": [1, 2, 3],
                         "except": [{"model": "a", "tess": [1, 3]}, {"tess": 2}]})"),
               (Words{"model=b tess=1", "model=b tess=3"}));
-    EXPECT_EQ(cases(R"({"verb": "toy", "models": "a", "except": [{"scheme": "pm"}]})"),
-              Words{"model=a"})
-        << "the case does not name the option";
+    EXPECT_THROW(cases(R"({"verb": "toy", "models": "a", "except": [{"scheme": "pm"}]})"), Error)
+        << "no case names the option";
     EXPECT_EQ(cases(R"({"verb": "toy", "models": "a", "cases": [{"model": "a", "tess": 1}],
                         "except": [{"model": "a"}]})"),
               Words{"model=a tess=1"})
