@@ -144,12 +144,16 @@ struct Claims::Impl {
             std::from_chars(name.data() + prefix.size(), name.data() + name.size(), generation);
             if (!out || generation > out->generation) out = Claim{generation, e.path(), {}, 0};
         }
-        if (!out) return out;
+        return out ? read(out->generation, out->path) : out;
+    }
+
+    // None: given back meanwhile.
+    static std::optional<Claim> read(int generation, fs::path const& path)
+    {
         struct stat status = {};
-        if (stat(out->path.c_str(), &status) != 0) return {}; // given back meanwhile
-        out->touched = seconds_of(status.st_mtim);
-        out->process = Process::parse(first_line(out->path));
-        return out;
+        if (stat(path.c_str(), &status) != 0) return {};
+        return Claim{generation, path, Process::parse(first_line(path)),
+                     seconds_of(status.st_mtim)};
     }
 
     fs::path own_file(char const* what) const
@@ -248,12 +252,18 @@ bool Claims::take(std::size_t block)
     std::scoped_lock const lock(impl_->mutex);
     if (impl_->own.count(block)) return false; // another thread's
     std::optional<Impl::Claim> const held = impl_->latest(block);
-    if (!held) return impl_->make(block, 0);
-    if (!impl_->has_lapsed(*held) || !impl_->make(block, held->generation + 1)) return false;
-    // Whoever took it over, did it and gave it back before us has removed what we saw.
-    std::error_code none;
-    if (fs::exists(held->path, none)) return true;
-    unlink(impl_->path_of(block, held->generation + 1).c_str());
+    if (held && !impl_->has_lapsed(*held)) return false;
+    int const generation = held ? held->generation + 1 : 0;
+    if (!impl_->make(block, generation)) return false;
+    // What was seen may be gone by now: taken over, done, given back, and claimed by another.
+    auto const now = impl_->latest(block);
+    bool good = now && now->generation == generation;
+    if (held) {
+        auto const before = impl_->read(held->generation, held->path);
+        good = good && before && impl_->has_lapsed(*before);
+    }
+    if (good) return true;
+    unlink(impl_->path_of(block, generation).c_str());
     impl_->own.erase(block);
     return false;
 }

@@ -215,7 +215,11 @@ TEST(Sweep, ACaseThatFailsIsToldAndTheRestGoesOn)
     EXPECT_EQ(r.status, 0);
     EXPECT_TRUE(has(r.err, "warning: 1 of 4 cases failed; case 1: " + why)) << r.err;
     EXPECT_TRUE(has(test::read_text(csv), ",failed,\"" + why));
-    EXPECT_EQ(run("sweep run " + folder.string() + " --retry").status, 1);
+    EXPECT_EQ(run("sweep run " + folder.string()).out,
+              "3 of 4 cases done, 1 failed; 0 have run now\n");
+    r = run("sweep run " + folder.string() + " --retry");
+    EXPECT_EQ(r.status, 1);
+    EXPECT_EQ(r.out, "3 of 4 cases done, 1 failed; 1 have run now\n");
 }
 
 TEST(Sweep, AMessageDoesNotSayWhereTheFolderLies)
