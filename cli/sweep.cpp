@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <thread>
 
 namespace tessemu {
@@ -95,6 +96,28 @@ bool is_builtin(std::string const& option, std::string const& word)
     return std::find(known.begin(), known.end(), word) != known.end();
 }
 
+// A scheme's parameters, which --set takes as they come.
+void check_parameters(SweepManifest const& m)
+{
+    std::set<std::pair<std::string, std::vector<std::string>>> checked;
+    for (SweepCase const& c : m.cases) {
+        auto const given = c.options.find("set");
+        if (given == c.options.end()) continue;
+        auto const own = c.options.find("scheme");
+        std::string const scheme =
+            (own == c.options.end() ? m.defaults.at("scheme") : own->second).at(0);
+        if (!checked.emplace(scheme, given->second).second) continue;
+        ParameterTexts texts;
+        for (std::string const& t : given->second)
+            texts.emplace_back(t.substr(0, t.find('=')), t.substr(t.find('=') + 1));
+        try {
+            resolve_parameters(find_scheme(scheme).info(), texts);
+        } catch (Error const& e) {
+            throw Error(std::string("\"set\": ") + e.what());
+        }
+    }
+}
+
 int plan(PlanRequest const& o)
 {
     std::string const text = read_file(o.sweep);
@@ -126,8 +149,10 @@ int plan(PlanRequest const& o)
     };
     SweepPlan const plan = [&] {
         try {
-            return plan_sweep(sweep, sweep_verb(sweep.verb), std::string(tessemu_version()),
-                              find_input);
+            SweepPlan out = plan_sweep(sweep, sweep_verb(sweep.verb),
+                                       std::string(tessemu_version()), find_input);
+            check_parameters(out.manifest);
+            return out;
         } catch (FormatError const&) {
             throw;
         } catch (Error const& e) {

@@ -411,6 +411,8 @@ TEST(Sweep, RefusalsNameTheFileTheKeyAndTheLimitAndLeaveNothing)
              {R"({"verb": "cost", "models": "jug", "gpu": "voodoo"})", "voodoo"},
              {R"({"verb": "draw", "models": "jug", "tes": 1})",
               R"("tes" is no option of draw that a sweep can set; there are )"},
+             {R"({"verb": "draw", "models": "jug", "set": ["lambda=1", "lambda=x"]})",
+              R"("set": )"},
              {R"({"verb": "draw", "models": "jug", "lanes": 4})", R"("lanes" is no option)"},
              {R"({"verb": "draw", "models": "jug", "json": "a"})", R"("json" is no option)"},
              {R"({"verb": "draw", "models": "jug", "o": "a.png"})", R"("o" is no option)"},
