@@ -329,8 +329,9 @@ struct MergeRequest {
 void keep_sweep(std::string const& output, std::string const& folder)
 {
     std::error_code none;
-    fs::path const path = fs::weakly_canonical(output, none),
-                   inside = fs::weakly_canonical(folder, none);
+    fs::path const path = fs::weakly_canonical(output, none);
+    fs::path inside = fs::weakly_canonical(folder, none);
+    if (!inside.has_filename()) inside = inside.parent_path(); // of "DIR/"
     if (std::mismatch(inside.begin(), inside.end(), path.begin(), path.end()).first == inside.end())
         throw WriteError("'" + output + "' is inside of the sweep; choose a place beside it");
     if (extension_of(path) == "json" && fs::exists(path, none) &&
