@@ -351,6 +351,8 @@ int merge(MergeRequest const& o)
     RunOutput out;
     OutputFile& file = out.add(o.output);
     OutputFile* const dictionary = o.dictionary.empty() ? nullptr : &out.add(o.dictionary);
+    if (dictionary && dictionary->is_same(file))
+        throw WriteError("--dictionary is '" + o.dictionary + "', where -o goes");
     SweepManifest const manifest = read_manifest(o.folder);
     check_ids(manifest, o.folder);
     SweepMerge const merged = merge_sweep(manifest, o.folder);
