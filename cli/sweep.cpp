@@ -303,6 +303,9 @@ int status(StatusRequest const& o)
     print(fmt::format("{}: {} cases of {}: {} done, {} failed, {} not yet\n", o.folder, s.cases,
                       manifest.verb, s.done, s.failed, s.open()));
     if (s.failed == 0) return 0;
+    std::set<std::string> flags;
+    for (SweepVerb::Option const& option : sweep_verb(manifest.verb).options)
+        if (option.flag) flags.insert(option.name);
     std::string text;
     std::size_t shown = 0;
     for (CaseRecord const& r : failures(manifest, o.folder)) {
@@ -311,7 +314,10 @@ int status(StatusRequest const& o)
         std::string words;
         for (auto const& [name, texts] : at->options)
             for (std::string const& t : texts)
-                words += name == "model" ? " " + t : fmt::format(" --{} {}", name, t);
+                if (flags.count(name) == 0)
+                    words += name == "model" ? " " + t : fmt::format(" --{} {}", name, t);
+                else if (t == "true")
+                    words += " --" + name;
         text += fmt::format("case {}: {}: {}\n", at - manifest.cases.begin() + 1,
                             manifest.verb + words, r.text);
         if (++shown == 20) break;
@@ -365,7 +371,7 @@ int merge(MergeRequest const& o)
                                                          table.rows.size(), table.columns.size()));
     if (merged.failed)
         print_warning(fmt::format("{} of {} cases failed; {}", merged.failed, table.rows.size(),
-                                  merged.first_failures[0]));
+                                  merged.first_failure));
     if (merged.missing == 0) return 0;
     print_message(fmt::format("tessemu: {}: {} of {} cases have not run yet: 'tessemu sweep run "
                               "{}'; their rows say \"missing\"\n",
@@ -421,6 +427,7 @@ int submit(SubmitRequest const& o)
     }
     std::error_code error;
     fs::create_directories(scripts, error);
+    if (error) throw WriteError(scripts.string() + ": " + error.message());
     write_file(first.back(), array);
     if (!last.empty()) write_file(then.back(), last);
     try {

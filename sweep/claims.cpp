@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sweep/claims.h"
 
-#include "io/input_file.h"
 #include "io/output_file.h"
 
 #include <fmt/format.h>
@@ -193,17 +192,22 @@ struct Claims::Impl {
     {
         fs::path const path = path_of(block, generation), fresh = own_file("new");
         std::string const text = self.json() + "\n";
-        int const file = open(fresh.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0666);
+        // Without a name where the file system can: then a process that is killed leaves nothing.
+        int file = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+        bool const is_named = file < 0;
+        if (is_named) file = open(fresh.c_str(), O_CREAT | O_TRUNC | O_WRONLY | O_CLOEXEC, 0666);
         if (file < 0) fail(fresh, errno);
         bool const written = write(file, text.data(), text.size()) == ssize_t(text.size());
         int error = written ? 0 : errno;
-        close(file);
         bool made = false;
         if (written) {
-            made = link(fresh.c_str(), path.c_str()) == 0;
+            std::string const from =
+                is_named ? fresh.string() : fmt::format("/proc/self/fd/{}", file);
+            made = linkat(AT_FDCWD, from.c_str(), AT_FDCWD, path.c_str(), AT_SYMLINK_FOLLOW) == 0;
             error = made ? 0 : errno;
         }
-        unlink(fresh.c_str());
+        close(file);
+        if (is_named) unlink(fresh.c_str());
         if (error == EEXIST) return false;
         if (written && !made && (error == EPERM || error == EOPNOTSUPP || error == ENOSYS))
             made = make_without_links(path, text, error);

@@ -41,14 +41,7 @@ CaseOptions to_options(Json const& j)
     return out;
 }
 
-// \param options  all, with inputs by their names; \param hashes  of inputs by option
-std::string id_of(SweepManifest const& m, CaseOptions const& options, Json const& hashes)
-{
-    return sha256_of(Json{
-        {"version", m.version}, {"verb", m.verb}, {"options", to_json(options)}, {"inputs", hashes}}
-                         .dump());
-}
-
+// Inputs count by their names and hashes, wherever they lie.
 std::string id_of(SweepManifest const& m, SweepCase const& c)
 {
     CaseOptions options = m.resolved(c);
@@ -59,7 +52,9 @@ std::string id_of(SweepManifest const& m, SweepCase const& c)
                 hashes[name] = input->sha256;
                 text = input->name;
             }
-    return id_of(m, options, hashes);
+    return sha256_of(Json{
+        {"version", m.version}, {"verb", m.verb}, {"options", to_json(options)}, {"inputs", hashes}}
+                         .dump());
 }
 
 } // namespace
@@ -88,8 +83,8 @@ SweepPlan plan_sweep(Sweep const& sweep, SweepVerb const& verb, std::string cons
     for (SweepVerb::Option const& o : verb.options)
         if (!o.fallback.empty()) m.defaults[o.name] = o.fallback;
 
-    std::unordered_map<std::string, std::string>
-        places; // what an option's text becomes in the folder
+    // What an option's text becomes in the folder.
+    std::unordered_map<std::string, std::string> places;
     auto const place = [&](std::string const& option,
                            std::string const& text) -> std::string const& {
         auto const [at, fresh] = places.try_emplace(option + '\n' + text, text);

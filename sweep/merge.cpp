@@ -260,14 +260,13 @@ SweepMerge merge_sweep(SweepManifest const& manifest, std::filesystem::path cons
     SweepMerge out;
     Table table;
     ResultColumns results(table);
-    std::vector<std::string> options; // those by which cases differ from each other, and the model
+    std::vector<std::string> options; // that any case gives
     for (SweepCase const& c : manifest.cases)
         for (auto const& [name, texts] : c.options)
             if (std::find(options.begin(), options.end(), name) == options.end())
                 options.push_back(name);
-    auto const rank = [](std::string const& o) { return o == "model" ? 0 : o == "scheme" ? 1 : 2; };
-    std::sort(options.begin(), options.end(), [&](std::string const& a, std::string const& b) {
-        return std::pair(rank(a), a) < std::pair(rank(b), b);
+    std::sort(options.begin(), options.end(), [](std::string const& a, std::string const& b) {
+        return std::pair(option_rank(a), a) < std::pair(option_rank(b), b);
     });
     for (std::size_t i = 0; i < manifest.cases.size(); ++i) {
         SweepCase const& c = manifest.cases[i];
@@ -301,8 +300,8 @@ SweepMerge merge_sweep(SweepManifest const& manifest, std::filesystem::path cons
             results.add(result);
         } else if (there) {
             ++out.failed;
-            if (out.first_failures.size() < 5)
-                out.first_failures.push_back(fmt::format("case {}: {}", i + 1, found->second.text));
+            if (out.first_failure.empty())
+                out.first_failure = fmt::format("case {}: {}", i + 1, found->second.text);
         } else {
             ++out.missing;
         }

@@ -26,7 +26,7 @@ struct SweepTable {
 struct SweepMerge {
     SweepTable table; ///< with a row for each case, those without a result too
     std::size_t done = 0, failed = 0, missing = 0;
-    std::vector<std::string> first_failures; ///< "case 12: message", five at most
+    std::string first_failure; ///< "case 12: message"; empty: none
 };
 /// Throws FormatError for results that are damaged.
 SweepMerge merge_sweep(SweepManifest const& manifest, std::filesystem::path const& folder);

@@ -58,7 +58,7 @@ public:
         check_names_once(out.grid);
         std::stable_sort(out.grid.begin(), out.grid.end(),
                          [](Sweep::Axis const& a, Sweep::Axis const& b) {
-                             return rank(a.option) < rank(b.option);
+                             return option_rank(a.option) < option_rank(b.option);
                          });
         for (SweepVerb::Option const& o : verb_.options) {
             if (!o.required) continue;
@@ -76,12 +76,6 @@ public:
 
 private:
     [[noreturn]] void fail(std::string const& what) const { throw FormatError(file_, 0, what); }
-
-    // Tables of a model are made once where its cases follow each other.
-    static int rank(std::string const& option)
-    {
-        return option == "model" ? 0 : option == "scheme" ? 1 : 2;
-    }
 
     void check_names_once(std::vector<Sweep::Axis> const& axes) const
     {
@@ -213,6 +207,12 @@ Sweep read_sweep(std::string_view text, std::string const& file,
         throw FormatError(file, 0, e.what());
     }
     return Reader(file, verb).read(j);
+}
+
+// Tables of a model are made once where its cases follow each other.
+int option_rank(std::string const& option)
+{
+    return option == "model" ? 0 : option == "scheme" ? 1 : 2;
 }
 
 std::vector<CaseOptions> cases_of(Sweep const& sweep)

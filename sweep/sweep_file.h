@@ -61,6 +61,9 @@ struct Sweep {
 Sweep read_sweep(std::string_view text, std::string const& file,
                  std::function<SweepVerb(std::string const& name)> const& find_verb);
 
+/// What comes first: 0 the model, 1 the scheme, 2 all others.
+int option_rank(std::string const& option);
+
 /// At most so many combinations.
 inline constexpr std::uint64_t kMostCases = 10'000'000;
 
