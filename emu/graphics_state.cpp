@@ -117,7 +117,7 @@ DepthTarget::DepthTarget(int width, int height, Format format, int samples)
       samples_(samples),
       format_(format),
       pitch_(pitch_of(width, height, samples)),
-      depth_(pitch_ * std::size_t(height + kRowsReadBeyond))
+      depth_(pitch_ * std::size_t(height))
 {
     if (info(format).type != FormatType::Depth)
         throw Error(std::string(info(format).name) + " is not a depth format");

@@ -204,8 +204,6 @@ public:
         return std::size_t(y) * pitch_ + std::size_t(x) * std::size_t(samples_) + std::size_t(s);
     }
     std::size_t pitch() const { return pitch_; } ///< codes from one row to the next
-    /// Rows of memory below the last, and four codes: blocks of 4x4 that begin inside may be read.
-    static constexpr int kRowsReadBeyond = 4;
     std::uint32_t* codes() { return depth_.get(); }
     std::uint32_t const* codes() const { return depth_.get(); }
     std::uint8_t* stencil() { return stencil_.data(); }

@@ -120,15 +120,6 @@ template <int N> Lanes<N> load_pairs(float const* memory, IntLanes<N> index)
     return typename Lanes<N>::Raw(detail::joined<N>(parts));
 }
 
-/// Rows of four of an array `pitch` elements wide, one behind the other.
-template <int N> IntLanes<N> load_rows_of_four(std::int32_t const* p, std::size_t pitch)
-{
-    detail::Floats<4> rows[N / 4];
-    for (std::size_t r = 0; r < std::size_t(N / 4); ++r)
-        __builtin_memcpy(&rows[r], p + r * pitch, sizeof rows[r]);
-    return typename IntLanes<N>::Raw(detail::joined<N>(rows));
-}
-
 #if defined(__AVX2__)
 namespace detail {
 // By mask of eight lanes: which of them come to the front.
@@ -263,6 +254,25 @@ template <int N> IntLanes<N> load_bytes(std::uint8_t const* p)
     Bytes b;
     __builtin_memcpy(&b, p, N);
     return __builtin_convertvector(b, typename IntLanes<N>::Raw);
+}
+
+/// Numbers of 16 bits as lanes.
+template <int N> IntLanes<N> load_words(std::uint16_t const* p)
+{
+#if defined(__AVX512F__)
+    if constexpr (N == 16)
+        return typename IntLanes<N>::Raw(_mm512_maskz_cvtepu16_epi32(
+            __mmask16(-1), _mm256_loadu_si256(reinterpret_cast<__m256i const*>(p))));
+#endif
+#if defined(__AVX2__)
+    if constexpr (N == 8)
+        return typename IntLanes<N>::Raw(
+            _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<__m128i const*>(p))));
+#endif
+    typedef std::uint16_t Words __attribute__((vector_size(2 * N)));
+    Words w;
+    __builtin_memcpy(&w, p, 2 * N);
+    return __builtin_convertvector(w, typename IntLanes<N>::Raw);
 }
 
 /// The low byte of each lane.

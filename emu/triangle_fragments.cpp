@@ -25,12 +25,10 @@ void TriangleStream::finish_covered()
 void TriangleStream::tabulate_depth()
 {
     I const k16(16), low(0xffff), k8(8);
-    I const first_survivor(covered_survivor_[0]);
     for (std::size_t t = 0; t < covered_; t += std::size_t(N)) {
         Mask<N> const live = Mask<N>::first(int(std::min(std::size_t(N), covered_ - t)));
-        I const s = select(live, load_lanes<N>(covered_survivor_ + t), first_survivor);
-        I const v0 = gather(survivor_[0], s), v1 = gather(survivor_[1], s),
-                v2 = gather(survivor_[2], s);
+        I const v0 = load_lanes<N>(row(kPacked) + t), v1 = load_lanes<N>(row(kPacked + 1) + t),
+                v2 = load_lanes<N>(row(kPacked + 2) + t);
         I const x0 = v0 & low, x1 = v1 & low, x2 = v2 & low;
         I const y0 = v0 >> k16, y1 = v1 >> k16, y2 = v2 >> k16;
         // Edge functions over pixel numbers, exact modulo 2^32; inside the triangle they lie
@@ -45,7 +43,7 @@ void TriangleStream::tabulate_depth()
         edge(kA2, x0, y0, x1, y1);
         I const area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0);
         (F(1.0f) / F(area)).store(float_row(kInverse) + t);
-        I const tag = gather(survivor_[3], s);
+        I const tag = select(live, load_lanes<N>(row(kTag) + t), I(0));
         Mask<N> const exchanged = (tag & I(1)) != I(0);
         Mask<N> const front = assembler_->front_is_clockwise() ? !exchanged : exchanged;
         store_lanes(I(I::Raw(front.raw)), row(kFront) + t);
@@ -56,23 +54,16 @@ void TriangleStream::tabulate_depth()
         I const c1 = corner(1), c2 = corner(2);
         I const id[3] = {corner(0), select(exchanged, c2, c1), select(exchanged, c1, c2)};
         for (int k = 0; k < 3; ++k) store_lanes(id[k], row(kCorner + k) + t);
-        store_differences(kZ, vertices_->z.data(), id, t);
+        float const* const z = vertices_->z.data();
+        store_differences(kZ, {gather(z, id[0]), gather(z, id[1]), gather(z, id[2])}, t);
     }
 }
 
-inline void TriangleStream::store_differences(int r, float const* column, I const (&id)[3],
-                                              std::size_t t)
+inline void TriangleStream::store_differences(int r, std::array<F, 3> const& corner, std::size_t t)
 {
-    F const a = gather(column, id[0]), b = gather(column, id[1]), c = gather(column, id[2]);
-    a.store(float_row(r) + t);
-    (b - a).store(float_row(r + 1) + t);
-    (c - a).store(float_row(r + 2) + t);
-}
-
-inline TriangleStream::Columns TriangleStream::columns(std::size_t q, Mask<N> live) const
-{
-    std::int32_t const base = queue_triangle_[q];
-    return {table_.data() + base, select(live, load_lanes<N>(queue_triangle_ + q) - I(base), I(0))};
+    corner[0].store(float_row(r) + t);
+    (corner[1] - corner[0]).store(float_row(r + 1) + t);
+    (corner[2] - corner[0]).store(float_row(r + 2) + t);
 }
 
 // As the target holds it, clamped to the viewport (R135).
@@ -89,21 +80,23 @@ inline TriangleStream::I TriangleStream::depth_code(F z) const
 void TriangleStream::drop_hidden()
 {
     bool const or_equal = setup_->target.depth_stencil.depth_func == Comparison::LessEqual;
-    I const slack(or_equal ? 1 : 0); // codes of depths are whole numbers from 0 on
+    I const pitch(pitch_), slack(or_equal ? 1 : 0); // codes of depths are whole numbers from 0 on
     std::size_t kept = 0;
     for (std::size_t q = 0, queued = queued_; q < queued; q += std::size_t(N)) {
         Mask<N> const live = Mask<N>::first(int(std::min(std::size_t(N), queued - q)));
-        Columns const of = columns(q, live);
-        I const pixel = load_lanes<N>(queue_pixel_ + q), x = pixel & I(0xffff), y = pixel >> I(16);
+        I const owner = load_words<N>(queue_owner_ + q), place = load_words<N>(queue_place_ + q);
+        std::int32_t const first = owner.raw[0];
+        Columns const of{table_.data() + first, select(live, owner - I(first), I(0))};
+        I const pixel = of.ints(kBox) + (((place >> I(6)) << I(16)) | (place & I(63)));
+        I const x = pixel & I(0xffff), y = pixel >> I(16);
         I const e1 = of.ints(kA1) * x + of.ints(kB1) * y + of.ints(kC1);
         I const e2 = of.ints(kA2) * x + of.ints(kB2) * y + of.ints(kC2);
         F const inverse = of.floats(kInverse), b1 = F(e1) * inverse, b2 = F(e2) * inverse;
         F const z = of.floats(kZ) + (b1 * of.floats(kDz1) + b2 * of.floats(kDz2));
-        Mask<N> const pass = depth_code(z) < load_lanes<N>(queue_depth_ + q) + slack;
-        std::uint32_t const bits = (pass & live).bits();
-        I const t = load_lanes<N>(queue_triangle_ + q);
+        I const depth = gather(depths_, select(live, y * pitch + x, I(0)));
+        std::uint32_t const bits = ((depth_code(z) < depth + slack) & live).bits();
         store_lanes(compress(pixel, bits), queue_pixel_ + kept);
-        store_lanes(compress(t, bits), queue_triangle_ + kept);
+        store_lanes(compress(owner, bits), queue_triangle_ + kept);
         compress(z, bits).store(queue_z_ + kept);
         compress(b1, bits).store(queue_b_[0] + kept);
         compress(b2, bits).store(queue_b_[1] + kept);
@@ -146,12 +139,16 @@ void TriangleStream::tabulate_attributes()
         Mask<N> const live = Mask<N>::first(int(std::min(std::size_t(N), covered_ - t)));
         I id[3];
         for (int k = 0; k < 3; ++k) id[k] = select(live, load_lanes<N>(row(kCorner + k) + t), I(0));
-        store_differences(kW, vs.inverse_w.data(), id, t);
-        gather(vs.inverse_w.data(), id[1]).store(float_row(kW1) + t);
-        gather(vs.inverse_w.data(), id[2]).store(float_row(kW2) + t);
+        auto const corners = [&](float const* column) {
+            return std::array{gather(column, id[0]), gather(column, id[1]), gather(column, id[2])};
+        };
+        auto const w = corners(vs.inverse_w.data());
+        store_differences(kW, w, t);
+        w[1].store(float_row(kW1) + t);
+        w[2].store(float_row(kW2) + t);
         for (int k = 0; k < attributes_; ++k)
-            store_differences(kAttributes + 3 * k, vs.shaded + std::size_t(k + 4) * vs.stride, id,
-                              t);
+            store_differences(kAttributes + 3 * k,
+                              corners(vs.shaded + std::size_t(k + 4) * vs.stride), t);
     }
 }
 
@@ -165,7 +162,10 @@ void TriangleStream::interpolate()
     for (std::size_t q = 0; q < queued; q += std::size_t(N)) {
         if (shaded_ + std::size_t(N) > kShade) shade();
         std::size_t const n = std::min(std::size_t(N), queued - q), at = shaded_;
-        Columns const of = columns(q, Mask<N>::first(int(n)));
+        I const triangle = load_lanes<N>(queue_triangle_ + q);
+        std::int32_t const first = triangle.raw[0];
+        Columns const of{table_.data() + first,
+                         select(Mask<N>::first(int(n)), triangle - I(first), I(0))};
         F const b1 = F::load(queue_b_[0] + q), b2 = F::load(queue_b_[1] + q);
         F const w = F(1.0f) / (of.floats(kW) + (b1 * of.floats(kDw1) + b2 * of.floats(kDw2)));
         F const p1 = b1 * of.floats(kW1) * w, p2 = b2 * of.floats(kW2) * w;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "emu/triangle_stream.h"
 
-#include <array>
 #include <bit>
 
 namespace tessemu {
@@ -113,9 +112,6 @@ void TriangleStream::add_patch(DomainPoints const& pattern, std::int32_t primiti
     DepthTarget const& depth = *setup_->target.depth;
     depths_ =
         reinterpret_cast<std::int32_t const*>(depth.codes()) + depth.index(origin_x_, origin_y_);
-    for (std::int32_t y = 0; y <= (high_y >> 8) - origin_y_; ++y)
-        for (std::int32_t x = 0; x <= (high_x >> 8) - origin_x_ + 15; x += 16)
-            __builtin_prefetch(depths_ + std::size_t(y) * std::size_t(pitch_) + x);
     // Runs of points may be read past the last one.
     if (packed_.size() < padded + 16) packed_.resize(padded + 16);
     I const ox(origin_x_ * 256), oy(origin_y_ * 256);
@@ -182,211 +178,260 @@ inline void TriangleStream::set_up(I v0, I v1, I v2, I triangle)
     if (survivors_ > kSurvivors - std::size_t(N)) cover_survivors();
 }
 
-namespace {
-
-// Pixel k of a row of four and those below it, as y << 16 | x.
-template <int N> IntLanes<N> unit_offsets()
-{
-    IntLanes<N> r;
-    for (int i = 0; i < N; ++i) r.raw[i] = (i >> 2) << 16 | (i & 3);
-    return r;
-}
-
-} // namespace
-
-// Queues those of N pixels, in rows of four from `corner` on, whose bit is set; entries are written in
-// full and kept as far as bits go.
-inline void TriangleStream::queue_unit(std::int32_t corner, std::uint32_t bits)
-{
-    std::int32_t const* const depths =
-        depths_ + std::ptrdiff_t(corner >> 16) * pitch_ + (corner & 0xffff);
-    store_lanes(I(corner) + compress(unit_offsets<N>(), bits), queue_pixel_ + queued_);
-    store_lanes(I(std::int32_t(covered_)), queue_triangle_ + queued_);
-    store_lanes(compress(load_rows_of_four<N>(depths, std::size_t(pitch_)), bits),
-                queue_depth_ + queued_);
-    queued_ += std::size_t(std::popcount(bits));
-}
-
+// In two passes: the first branches little, and what the second branches on is known by then.
 void TriangleStream::cover_survivors()
 {
     for (std::size_t first = 0; first < survivors_; first += std::size_t(N))
-        cover_group(first, int(std::min(std::size_t(N), survivors_ - first)));
+        mask_group(first, Mask<N>::first(int(std::min(std::size_t(N), survivors_ - first))).bits());
+    for (std::size_t first = 0; first < survivors_; first += std::size_t(N)) queue_group(first);
     finish_covered();
     survivors_ = 0;
 }
 
-void TriangleStream::cover_group(std::size_t first, int count)
+void TriangleStream::mask_group(std::size_t first, std::uint32_t valid)
 {
-    if (queued_ + 2 * std::size_t(N) > kQueue) finish_covered();
-    I const v0 = load_lanes<N>(survivor_[0] + first), v1 = load_lanes<N>(survivor_[1] + first),
-            v2 = load_lanes<N>(survivor_[2] + first);
     I const k16(16), low(0xffff), k8(8), up(127), down(-129);
-    I const x[3] = {v0 & low, v1 & low, v2 & low}, y[3] = {v0 >> k16, v1 >> k16, v2 >> k16};
+    I x[3], y[3];
+    for (int k = 0; k < 3; ++k) {
+        I const packed = load_lanes<N>(survivor_[k] + first);
+        x[k] = packed & low;
+        y[k] = packed >> k16;
+    }
     I const left = (min(min(x[0], x[1]), x[2]) + up) >> k8,
             top = (min(min(y[0], y[1]), y[2]) + up) >> k8;
-    I const right = (max(max(x[0], x[1]), x[2]) + down) >> k8,
-            bottom = (max(max(y[0], y[1]), y[2]) + down) >> k8;
-    std::uint32_t const valid = Mask<N>::first(count).bits();
-    // Strict edges are moved by one unit, so that >= 0 holds for both kinds. 32 bits hold the values
-    // about boxes of up to 60 pixels.
+    I const columns = ((max(max(x[0], x[1]), x[2]) + down) >> k8) - left,
+            rows = ((max(max(y[0], y[1]), y[2]) + down) >> k8) - top;
+    store_lanes(left | (top << k16), box_ + first);
+    store_lanes(top * I(pitch_) + left, texel_ + first);
     I const cx = (left << k8) + I(128), cy = (top << k8) + I(128);
-    Group g{{}, {}, {}, left | (top << k16), right - left, bottom - top};
+    Edges e; // strict ones are moved by one unit, so that both kinds hold from 0 on
     for (int i = 0; i < 3; ++i) {
         int const a = (i + 1) % 3, b = (i + 2) % 3;
         I const dx = x[b] - x[a], dy = y[b] - y[a];
         Mask<N> const top_left = (dy < I(0)) | ((dy == I(0)) & (dx > I(0)));
-        g.edge[i] = dx * (cy - y[a]) - dy * (cx - x[a]) - select(top_left, I(0), I(1));
-        g.step_x[i] = I(0) - (dy << k8);
-        g.step_y[i] = dx << k8;
+        e.outside[i] = dy * (cx - x[a]) - dx * (cy - y[a]) - select(top_left, I(1), I(0));
+        e.step_x[i] = dy << k8;
+        e.step_y[i] = I(0) - (dx << k8);
     }
-    I const longest = max(g.columns, g.rows);
-    if (((longest > I(0)).bits() & valid) == 0) return cover_pixels(first, valid, g);
-    std::uint32_t const large = (longest > I(3)).bits() & valid,
-                        huge = (longest > I(59)).bits() & valid;
-    std::int32_t blocks[N], corners[N];
-    I const covered = cover_blocks(g, valid & ~large);
-    int const parts = N == 16 || (covered > I(all_lanes<N>())).bits() & valid ? 16 : N;
-    store_lanes(covered, blocks);
-    store_lanes(g.corner, corners);
-    GroupRows rows;
-    if (large) rows = GroupRows(g);
-    for (std::uint32_t bits = ((covered != I(0)).bits() & valid) | large; bits; bits &= bits - 1) {
-        int const l = std::countr_zero(bits);
-        std::size_t const survivor = first + std::size_t(l);
-        if (huge >> l & 1) {
-            cover_huge(survivor);
-            continue;
+    Mask<N> const large = max(columns, rows) > I(3);
+    std::uint32_t const small = valid & ~large.bits();
+    I masks(0);
+    if (small) {
+        auto const last = [&](I of) {
+            return (of > I(2)).bits() & small   ? 3
+                   : (of > I(1)).bits() & small ? 2
+                                                : int(((of > I(0)).bits() & small) != 0);
+        };
+        int const last_row = last(rows);
+        switch (last(columns)) {
+        case 0:
+            masks = small_masks<1>(e, last_row);
+            break;
+        case 1:
+            masks = small_masks<2>(e, last_row);
+            break;
+        case 2:
+            masks = small_masks<3>(e, last_row);
+            break;
+        default:
+            masks = small_masks<4>(e, last_row);
         }
-        if (large >> l & 1) {
-            cover_large(survivor, rows, l);
-            continue;
-        }
-        if (queued_ + 32 > kQueue) finish_covered();
-        for (int part = 0; part < parts; part += N)
-            queue_unit(corners[l] + (part >> 2 << 16),
-                       std::uint32_t(blocks[l]) >> part & all_lanes<N>());
-        covered_survivor_[covered_++] = std::int32_t(survivor);
     }
+    if (small != valid) {
+        for (int i = 0; i < 3; ++i) {
+            store_lanes(e.outside[i], outside_[i] + first);
+            store_lanes(e.step_x[i], step_x_[i] + first);
+            store_lanes(e.step_y[i], step_y_[i] + first);
+        }
+        store_lanes(columns, columns_ + first);
+        store_lanes(rows, rows_ + first);
+    }
+    store_lanes(select(Mask<N>::of(valid), select(large, I(kLarge), masks), I(0)), mask_ + first);
 }
 
-// Triangles whose box holds one pixel centre.
-inline void TriangleStream::cover_pixels(std::size_t first, std::uint32_t valid, Group const& g)
-{
-    std::uint32_t const covers = ~(g.edge[0] | g.edge[1] | g.edge[2]).negative() & valid;
-    I const texel = (g.corner >> I(16)) * I(pitch_) + (g.corner & I(0xffff));
-    I const depth = gather(depths_, select(Mask<N>::of(valid), texel, I(0)));
-    store_lanes(compress(g.corner, covers), queue_pixel_ + queued_);
-    store_lanes(compress(depth, covers), queue_depth_ + queued_);
-    store_lanes(I(std::int32_t(covered_)) + I::iota(), queue_triangle_ + queued_);
-    store_lanes(compress(I::iota() + I(std::int32_t(first)), covers), covered_survivor_ + covered_);
-    queued_ += std::size_t(std::popcount(covers));
-    covered_ += std::size_t(std::popcount(covers));
-}
-
-// Of those within 4x4 pixels: bit 4 y + x says whether pixel (x, y) of the box is covered.
-inline TriangleStream::I TriangleStream::cover_blocks(Group const& g, std::uint32_t small)
+// Of triangles within 4x4 pixels. Pixels right of a box or below it are never inside its triangle.
+template <int kColumns>
+inline TriangleStream::I TriangleStream::small_masks(Edges const& edges, int rows)
 {
     I masks(0);
-    if (small == 0) return masks;
-    // Pixels right of a box or below it are never inside its triangle.
-    auto const last = [&](I of) {
-        return (of > I(2)).bits() & small ? 3 : (of > I(1)).bits() & small ? 2 : 1;
-    };
-    int const last_column = last(g.columns), last_row = last(g.rows);
-    I e[3] = {g.edge[0], g.edge[1], g.edge[2]};
-    for (int r = 0; r <= last_row; ++r) {
+    I e[3] = {edges.outside[0], edges.outside[1], edges.outside[2]};
+    for (int r = 0;; ++r) {
         I f[3] = {e[0], e[1], e[2]};
-        for (int c = 0; c <= last_column; ++c) {
-            I const outside = (f[0] | f[1] | f[2]) >> I(31);
-            masks = masks | (((outside + I(1)) << I(4 * r + c)));
-            for (int i = 0; i < 3; ++i) f[i] = f[i] + g.step_x[i];
+        I row(0);
+#pragma GCC unroll 4
+        for (int c = 0; c < kColumns; ++c) {
+            row = row | (((f[0] & f[1] & f[2]) >> I(31)) & I(1 << c));
+            for (int i = 0; i < 3; ++i) f[i] = f[i] + edges.step_x[i];
         }
-        for (int i = 0; i < 3; ++i) e[i] = e[i] + g.step_y[i];
+        masks = masks | (row << I(4 * r));
+        if (r == rows) return masks;
+        for (int i = 0; i < 3; ++i) e[i] = e[i] + edges.step_y[i];
     }
-    return masks;
 }
 
-// A larger one, in units of N pixels: lanes over units tell which of them an edge leaves out, lanes
-// over pixels what the others cover.
-inline void TriangleStream::cover_large(std::size_t survivor, GroupRows const& g, int l)
+namespace {
+
+// Eight pixels in rows of kAcross, by mask: those whose bit is set, as 64 y + x.
+template <int kAcross>
+constexpr auto kUnitPlaces = [] {
+    std::array<std::array<std::uint8_t, 8>, 256> table{};
+    for (std::size_t mask = 0; mask < table.size(); ++mask) {
+        std::size_t n = 0;
+        for (int i = 0; i < 8; ++i)
+            if (mask >> i & 1) table[mask][n++] = std::uint8_t(64 * (i / kAcross) + i % kAcross);
+    }
+    return table;
+}();
+
+} // namespace
+
+// Writes to the queue, from `at` on, those of a unit of eight pixels whose bit is set; its first one
+// lies at `corner` of the owner's box. Eight are written. Returns where the queue ends now.
+template <int kAcross>
+inline std::size_t TriangleStream::queue_unit(std::size_t at, std::uint32_t bits, Words corner,
+                                              Words owner)
 {
-    constexpr std::int32_t kRows = N / 4;
-    // u * kReciprocal[n] >> 16 is u / n for all units of a box of 15 x 15 blocks.
-    static constexpr auto kReciprocal = [] {
-        std::array<std::int32_t, 16> inverse{};
-        for (std::int32_t n = 1; n < 16; ++n) inverse[std::size_t(n)] = (65536 + n - 1) / n;
-        return inverse;
-    }();
-    std::int32_t const across = (g.columns[l] >> 2) + 1, units = across * (g.rows[l] / kRows + 1);
-    if (queued_ + std::size_t(units * N) + 32 > kQueue) finish_covered();
-    I const offset = unit_offsets<N>(), offset_x = offset & I(0xffff), offset_y = offset >> I(16);
-    I pixel[3]; // what a pixel of a unit adds
-    std::int32_t most[3];
-    for (int i = 0; i < 3; ++i) {
-        std::int32_t const x = g.step_x[i][l], y = g.step_y[i][l];
-        pixel[i] = I(x) * offset_x + I(y) * offset_y;
-        most[i] = std::max(0, 3 * x) + std::max(0, (kRows - 1) * y);
-    }
-    std::size_t const before = queued_;
-    for (std::int32_t from = 0; from < units; from += N) {
-        I const u = I::iota() + I(from);
-        I const row = (u * I(kReciprocal[std::size_t(across)])) >> I(16);
-        I const x = (u - row * I(across)) << I(2), y = row * I(kRows);
-        std::int32_t edge[3][N], corners[N];
-        I outside(0);
-        for (int i = 0; i < 3; ++i) {
-            I const value = I(g.edge[i][l]) + I(g.step_x[i][l]) * x + I(g.step_y[i][l]) * y;
-            store_lanes(value, edge[i]);
-            outside = outside | (value + I(most[i]));
-        }
-        store_lanes(I(g.corner[l]) + (x | (y << I(16))), corners);
-        std::uint32_t const reached =
-            ~outside.negative() & Mask<N>::first(std::min(N, units - from)).bits();
-        for (std::uint32_t bits = reached; bits; bits &= bits - 1) {
-            int const k = std::countr_zero(bits);
-            I out(0);
-            for (int i = 0; i < 3; ++i) out = out | (pixel[i] + I(edge[i][k]));
-            queue_unit(corners[k], ~out.negative() & all_lanes<N>());
-        }
-    }
-    covered_survivor_[covered_] = std::int32_t(survivor);
-    covered_ += queued_ != before;
+    typedef std::uint8_t Bytes __attribute__((vector_size(8)));
+    Bytes places;
+    __builtin_memcpy(&places, kUnitPlaces<kAcross>[bits].data(), sizeof places);
+    Words const of_box = __builtin_convertvector(places, Words) + corner;
+    __builtin_memcpy(queue_place_ + at, &of_box, sizeof of_box);
+    __builtin_memcpy(queue_owner_ + at, &owner, sizeof owner);
+    return at + std::size_t(std::popcount(bits));
 }
 
-// A triangle whose edge values need 64 bits: pixel by pixel.
-void TriangleStream::cover_huge(std::size_t s)
+// Puts these of N survivors into the table.
+inline void TriangleStream::keep(std::size_t first, std::uint32_t lanes)
 {
-    std::int32_t x[3], y[3];
-    for (int k = 0; k < 3; ++k) {
-        x[k] = survivor_[k][s] & 0xffff;
-        y[k] = survivor_[k][s] >> 16;
+    for (int k = 0; k < 4; ++k)
+        store_lanes(compress(load_lanes<N>(survivor_[k] + first), lanes),
+                    row(kPacked + k) + covered_);
+    store_lanes(compress(load_lanes<N>(box_ + first), lanes), row(kBox) + covered_);
+    covered_ += std::size_t(std::popcount(lanes));
+}
+
+void TriangleStream::queue_group(std::size_t first)
+{
+    if (queued_ + kSmallPixels > kQueue) finish_covered();
+    I const masks = load_lanes<N>(mask_ + first);
+    if (masks.negative()) return queue_mixed_group(first, (masks > I(0xff)).bits());
+    std::uint32_t const covering = (masks != I(0)).bits();
+    if ((masks > I(1)).bits() == 0) { // the first pixel of each at most
+        for (std::size_t i = 0; i < std::size_t(N); i += 8) {
+            constexpr Words kRamp{0, 1, 2, 3, 4, 5, 6, 7};
+            Words const places{}, owners = kRamp + std::uint16_t(covered_ + i);
+            __builtin_memcpy(queue_place_ + queued_ + i, &places, sizeof places);
+            __builtin_memcpy(queue_owner_ + queued_ + i, &owners, sizeof owners);
+        }
+        for (std::size_t l = 0; l < std::size_t(N); ++l)
+            __builtin_prefetch(depths_ + texel_[first + l]);
+        queued_ += std::size_t(std::popcount(covering));
+    } else {
+        bool const both = (masks > I(0xff)).bits();
+        auto owner = std::uint16_t(covered_);
+        std::size_t queued = queued_;
+        for (std::size_t s = first; s < first + std::size_t(N); ++s) {
+            queued = queue_small(queued, s, owner, both);
+            owner = std::uint16_t(owner + (mask_[s] != 0));
+        }
+        queued_ = queued;
     }
-    std::int64_t dx[3], dy[3], c[3];
-    for (int i = 0; i < 3; ++i) {
-        int const a = (i + 1) % 3, b = (i + 2) % 3;
-        dx[i] = x[b] - x[a];
-        dy[i] = y[b] - y[a];
-        bool const top_left = dy[i] < 0 || (dy[i] == 0 && dx[i] > 0);
-        c[i] = dx[i] * (128 - y[a]) - dy[i] * (128 - x[a]) - (top_left ? 0 : 1);
-    }
-    bool entered = false;
-    for (std::int32_t py = (std::min({y[0], y[1], y[2]}) + 127) >> 8;
-         py <= (std::max({y[0], y[1], y[2]}) - 129) >> 8; ++py)
-        for (std::int32_t px = (std::min({x[0], x[1], x[2]}) + 127) >> 8;
-             px <= (std::max({x[0], x[1], x[2]}) - 129) >> 8; ++px) {
-            bool in = true;
-            for (int i = 0; i < 3; ++i) in = in && c[i] + dx[i] * 256 * py - dy[i] * 256 * px >= 0;
-            if (!in) continue;
-            if (queued_ + 32 > kQueue) {
+    keep(first, covering);
+}
+
+// Some of them large.
+void TriangleStream::queue_mixed_group(std::size_t first, bool both)
+{
+    std::uint32_t covering = 0;
+    auto owner = std::uint16_t(covered_);
+    std::size_t queued = queued_;
+    for (std::size_t l = 0; l < std::size_t(N); ++l) {
+        std::size_t const s = first + l;
+        std::size_t before = queued;
+        if (mask_[s] != kLarge) {
+            queued = queue_small(queued, s, owner, both);
+        } else {
+            bool const huge = std::max(columns_[s], rows_[s]) >= kWidestBox;
+            std::size_t const most =
+                std::size_t((columns_[s] | 7) + 1) * std::size_t((rows_[s] | 1) + 1);
+            if (huge || queued + most + kSmallPixels > kQueue) {
+                queued_ = queued;
+                keep(first, covering);
                 finish_covered();
-                entered = false;
+                before = queued = covering = owner = 0;
             }
-            if (!entered) covered_survivor_[covered_++] = std::int32_t(s);
-            entered = true;
-            queue_pixel_[queued_] = py << 16 | px;
-            queue_depth_[queued_] = depths_[std::ptrdiff_t(py) * pitch_ + px];
-            queue_triangle_[queued_++] = std::int32_t(covered_ - 1);
+            if (huge)
+                cover_huge(std::size_t(survivor_[3][s] >> 1));
+            else
+                queued = columns_[s] < 4 ? queue_large<4>(queued, s, owner)
+                                         : queue_large<8>(queued, s, owner);
         }
+        bool const covers = queued != before;
+        covering |= std::uint32_t(covers) << l;
+        owner = std::uint16_t(owner + covers);
+    }
+    queued_ = queued;
+    keep(first, covering);
+}
+
+// One within 4x4 pixels; `both`: their lower half too.
+inline std::size_t TriangleStream::queue_small(std::size_t at, std::size_t survivor,
+                                               std::uint16_t owner, bool both)
+{
+    std::size_t const pitch = std::size_t(pitch_);
+    std::int32_t const* const depths = depths_ + texel_[survivor];
+    auto const mask = std::uint32_t(mask_[survivor]);
+    __builtin_prefetch(depths);
+    __builtin_prefetch(depths + pitch);
+    at = queue_unit<4>(at, mask & 0xff, Words{}, Words{} + owner);
+    if (!both) return at;
+    __builtin_prefetch(depths + 2 * pitch);
+    __builtin_prefetch(depths + 3 * pitch);
+    return queue_unit<4>(at, mask >> 8, Words{} + std::uint16_t(128), Words{} + owner);
+}
+
+// A larger one, in units of eight pixels, down and then to the right.
+template <int kAcross>
+inline std::size_t TriangleStream::queue_large(std::size_t at, std::size_t survivor,
+                                               std::uint16_t owner)
+{
+    constexpr std::int32_t kDown = 8 / kAcross;
+    constexpr typename I8::Raw kPixel{0, 1, 2, 3, 4, 5, 6, 7};
+    I8 const x = I8(kPixel & (kAcross - 1)), y = I8(kPixel / kAcross);
+    std::size_t const pitch = std::size_t(pitch_);
+    std::int32_t const columns = columns_[survivor], rows = rows_[survivor];
+    I8 first[3], step_x[3], step_y[3];
+    for (int i = 0; i < 3; ++i) {
+        step_x[i] = I8(step_x_[i][survivor]);
+        step_y[i] = I8(step_y_[i][survivor]);
+        first[i] = I8(outside_[i][survivor]) + step_x[i] * x + (kDown > 1 ? step_y[i] * y : I8(0));
+        step_y[i] = step_y[i] * I8(kDown);
+        step_x[i] = step_x[i] * I8(kAcross);
+    }
+    for (std::int32_t from = 0; from <= columns; from += kAcross) {
+        I8 e[3] = {first[0], first[1], first[2]};
+        Words corner = Words{} + std::uint16_t(from);
+        std::int32_t const* depths = depths_ + texel_[survivor] + from;
+        for (std::int32_t row = 0; row <= rows; row += kDown) {
+            at = queue_unit<kAcross>(at, (e[0] & e[1] & e[2]).negative(), corner, Words{} + owner);
+            for (std::size_t r = 0; r < std::size_t(kDown); ++r)
+                __builtin_prefetch(depths + r * pitch);
+            for (int i = 0; i < 3; ++i) e[i] = e[i] + step_y[i];
+            corner += std::uint16_t(64 * kDown);
+            depths += kDown * pitch;
+        }
+        for (int i = 0; i < 3; ++i) first[i] = first[i] + step_x[i];
+    }
+    return at;
+}
+
+// A triangle whose edge values need 64 bits. It has been counted with its patch.
+void TriangleStream::cover_huge(std::size_t triangle)
+{
+    std::uint32_t const v[3] = {pattern_->corner[0][triangle], pattern_->corner[1][triangle],
+                                pattern_->corner[2][triangle]};
+    AssemblyCounters counted;
+    add_triangle(v, primitive_id_, counted);
 }
 
 void TriangleStream::add_triangle(std::uint32_t const* v, std::int32_t primitive_id,

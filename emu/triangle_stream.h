@@ -8,10 +8,10 @@
 // held at any time of the draw fails in order too, and need not be shaded (R163, I-16). It counts as
 // covered.
 //
-// On the geometry side: set-up and rejection with lanes over triangles, coverage in units of
-// N pixels, fragments dropped that lie behind what earlier waves left, attributes fetched once a triangle
-// that is left, fragments shaded in dense groups and sorted into tiles. On the raster side, tile by
-// tile: the depth test in submission order.
+// On the geometry side: set-up, rejection and coverage of small triangles with lanes over triangles,
+// of larger ones with lanes over pixels; fragments dropped that lie behind what earlier waves left,
+// attributes fetched once a triangle that is left, fragments shaded in dense groups and sorted into
+// tiles. On the raster side, tile by tile: the depth test in submission order.
 //
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
@@ -20,6 +20,8 @@
 #include "emu/fragment_bins.h"
 #include "emu/lane_memory.h"
 #include "emu/rasterizer.h"
+
+#include <array>
 
 namespace tessemu {
 
@@ -50,12 +52,19 @@ private:
     static constexpr int N = kRasterLanes;
     using F = Lanes<N>;
     using I = IntLanes<N>;
-    // A triangle of the widest block grid, 15 x 15, must fit the queue.
+    using I8 = IntLanes<8>;
     static constexpr std::size_t kSurvivors = 512, kQueue = 4096, kShade = 512;
     static constexpr std::size_t kShadeRow = kShade + 16, kTableRow = kSurvivors + 32;
     static constexpr int kMaxPatchPixels = 126; // 16-bit 8.8 numbers hold a patch
+    // Boxes of so many pixels have edge values of 32 bits; the queue takes one and N small ones.
+    static constexpr int kWidestBox = 60;
+    static constexpr std::size_t kSmallPixels = 16 * std::size_t(N);
+    static_assert(64 * kWidestBox + kSmallPixels <= kQueue);
     // Rows of the covered triangles' table.
     enum Row {
+        kPacked,            // three: the corners' positions
+        kTag = kPacked + 3, // 2 * triangle + exchanged
+        kBox,               // its first pixel, y << 16 | x
         kA1,
         kB1,
         kC1,
@@ -78,24 +87,23 @@ private:
 
     void set_up(I v0, I v1, I v2, I triangle);
     void cover_survivors();
-    void cover_group(std::size_t first, int count);
-    // N triangles. Edge i lies opposite vertex i: its value at the centre of the box's first pixel, and
-    // what a pixel to the right or below adds.
-    struct Group {
-        I edge[3], step_x[3], step_y[3];
-        I corner, columns, rows; // of the box; columns and rows but the first
+    // Edge i lies opposite vertex i: the complement of its value at the centre of the box's first pixel,
+    // which is negative inside, and what a pixel to the right or below adds.
+    struct Edges {
+        I outside[3], step_x[3], step_y[3];
     };
-    struct GroupRows { // its lanes one by one
-        GroupRows() = default;
-        explicit GroupRows(Group const& g) { __builtin_memcpy(this, &g, sizeof g); }
-        std::int32_t edge[3][N], step_x[3][N], step_y[3][N], corner[N], columns[N], rows[N];
-    };
-    static_assert(sizeof(GroupRows) == sizeof(Group));
-    void cover_pixels(std::size_t first, std::uint32_t valid, Group const& g);
-    static I cover_blocks(Group const& g, std::uint32_t small);
-    void cover_large(std::size_t survivor, GroupRows const& g, int lane);
-    void cover_huge(std::size_t survivor);
-    void queue_unit(std::int32_t corner, std::uint32_t bits);
+    void mask_group(std::size_t first, std::uint32_t valid);
+    template <int kColumns> static I small_masks(Edges const& edges, int rows);
+    void queue_group(std::size_t first);
+    void queue_mixed_group(std::size_t first, bool both);
+    typedef std::uint16_t Words __attribute__((vector_size(16)));
+    template <int kAcross>
+    std::size_t queue_unit(std::size_t at, std::uint32_t bits, Words corner, Words owner);
+    std::size_t queue_small(std::size_t at, std::size_t survivor, std::uint16_t owner, bool both);
+    template <int kAcross>
+    std::size_t queue_large(std::size_t at, std::size_t survivor, std::uint16_t owner);
+    void keep(std::size_t first, std::uint32_t lanes);
+    void cover_huge(std::size_t triangle);
     void finish_covered();
     void tabulate_depth();
     void drop_hidden();
@@ -111,9 +119,8 @@ private:
         }
         F floats(int r) const { return F(typename F::Raw(ints(r).raw)); }
     };
-    Columns columns(std::size_t q, Mask<N> live) const;
     void interpolate();
-    void store_differences(int row, float const* column, I const (&id)[3], std::size_t t);
+    void store_differences(int row, std::array<F, 3> const& corner, std::size_t t);
     I depth_code(F z) const;
     void draw_assembled(AssembledPrimitive const& p);
     void shade();
@@ -139,13 +146,20 @@ private:
     std::vector<AssembledPrimitive> assembled_;
 
     std::size_t survivors_ = 0;
-    std::int32_t survivor_[4][kSurvivors + 32]; // packed corners; 2 * triangle + exchanged
+    std::int32_t survivor_[4][kSurvivors + 32]; // rows kPacked to kTag
+    // Their boxes: the first pixel, as y << 16 | x and in depths_; and what a small one covers: bit
+    // 4 y + x for pixel (x, y), or kLarge. Columns and rows but the first, and Edges, of large ones.
+    std::int32_t box_[kSurvivors + 32], texel_[kSurvivors + 32], mask_[kSurvivors + 32],
+        columns_[kSurvivors + 32], rows_[kSurvivors + 32], outside_[3][kSurvivors + 32],
+        step_x_[3][kSurvivors + 32], step_y_[3][kSurvivors + 32];
+    static constexpr std::int32_t kLarge = -1;
     std::size_t covered_ = 0; // of the survivors; at most kSurvivors between two finish_covered()
     std::vector<std::int32_t> table_;
-    std::int32_t covered_survivor_[kTableRow];
     std::size_t queued_ = 0;
+    // Covered pixels: 64 y + x in the box of the triangle, whose number in the table is the owner.
+    std::uint16_t queue_place_[kQueue + 32], queue_owner_[kQueue + 32];
+    // What is not hidden.
     std::int32_t queue_pixel_[kQueue + 32], queue_triangle_[kQueue + 32]; // y << 16 | x
-    std::int32_t queue_depth_[kQueue + 32];                               // the target's code
     float queue_z_[kQueue + 32], queue_b_[2][kQueue + 32];
     std::int32_t number_[kTableRow]; // by covered triangle: among those that keep a fragment
     std::size_t shaded_ = 0;

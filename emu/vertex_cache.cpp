@@ -67,20 +67,12 @@ void VertexCache::link_newest(std::uint32_t v)
     newest_ = v;
 }
 
-bool VertexCache::access(std::uint32_t vertex)
+bool VertexCache::access_other(std::uint32_t vertex)
 {
     if (model_.kind == Kind::None) return false;
     bool const hit = resident_[vertex];
     resident_[vertex] = 1;
     if (model_.kind == Kind::Infinite) return hit;
-    if (model_.kind == Kind::Fifo) {
-        if (hit) return true;
-        std::uint32_t& oldest = ring_[next_];
-        if (oldest != kNone) resident_[oldest] = 0;
-        oldest = vertex;
-        next_ = next_ + 1 == ring_.size() ? 0 : next_ + 1;
-        return false;
-    }
     if (hit) {
         unlink(vertex);
     } else if (size_ == model_.entries) {

@@ -32,9 +32,20 @@ public:
     VertexCache(VertexCacheModel model, std::uint32_t vertex_id_limit);
 
     /// True if `vertex` is found; otherwise it enters and the vertex shader must run.
-    bool access(std::uint32_t vertex);
+    bool access(std::uint32_t vertex)
+    {
+        if (model_.kind != VertexCacheModel::Kind::Fifo) return access_other(vertex);
+        if (resident_[vertex]) return true;
+        resident_[vertex] = 1;
+        std::uint32_t& oldest = ring_[next_];
+        if (oldest != kNone) resident_[oldest] = 0;
+        oldest = vertex;
+        next_ = next_ + 1 == ring_.size() ? 0 : next_ + 1;
+        return false;
+    }
 
 private:
+    bool access_other(std::uint32_t vertex);
     void unlink(std::uint32_t vertex);
     void link_newest(std::uint32_t vertex);
 

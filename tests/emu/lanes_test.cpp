@@ -137,20 +137,20 @@ TYPED_TEST(LanesOf, NegativeLanesAreBitsInOrder)
     EXPECT_EQ(IntLanes<N>(0).negative(), 0u);
 }
 
-TYPED_TEST(LanesOf, PairsAndRowsOfFourAreWhereTheyLie)
+TYPED_TEST(LanesOf, PairsAndWordsAreWhereTheyLie)
 {
     constexpr int N = lanes_of<TypeParam>;
     std::vector<float> memory(100);
-    std::vector<std::int32_t> codes(100);
+    std::vector<std::uint16_t> words(100);
     for (std::size_t i = 0; i < memory.size(); ++i)
-        memory[i] = float(i) + 0.5f, codes[i] = std::int32_t(i);
+        memory[i] = float(i) + 0.5f, words[i] = std::uint16_t(65535 - i);
     IntLanes<N> index;
     for (int l = 0; l < N; ++l) index.raw[l] = (l / 2 * 37) % 99 + l % 2;
     Lanes<N> const pairs = load_pairs<N>(memory.data(), index);
-    IntLanes<N> const rows = load_rows_of_four<N>(codes.data() + 5, 19);
+    IntLanes<N> const numbers = load_words<N>(words.data() + 5);
     for (int l = 0; l < N; ++l) {
         EXPECT_EQ(pairs.raw[l], memory[std::size_t(index.raw[l])]);
-        EXPECT_EQ(rows.raw[l], 5 + l / 4 * 19 + l % 4);
+        EXPECT_EQ(numbers.raw[l], 65530 - l);
     }
 }
 

@@ -1,6 +1,7 @@
 // The fast way for triangles against the reader's rasterizer and against the general one.
 //
 // SPDX-License-Identifier: Apache-2.0
+#include "tests/emu/suite_facts/patches.h"
 #include "tests/support/reference_rasterizer.h"
 
 #include <gtest/gtest.h>
@@ -144,6 +145,79 @@ RC_GTEST_PROP(TriangleStream, SoupsEqualTheReadersRasterizerInEveryBitAndCount, 
     std::uint64_t covered = 0;
     for (std::uint32_t c : coverage.count) covered += c;
     RC_ASSERT(covered == reference.fragments);
+}
+
+// Between four control points.
+struct BilinearDomain {
+    static constexpr TessellatorDomain kDomain = TessellatorDomain::Quad;
+    template <class T> using ControlPoint = test::SceneVertex<T>;
+    template <class T> using PatchConstant = test::Constant<T>;
+    template <class T> using Output = test::SceneVertex<T>;
+    template <class T>
+    test::SceneVertex<T> operator()(DomainInput<T> const& in,
+                                    ControlPoints<test::SceneVertex<T>> const& p,
+                                    ControlPoints<test::Constant<T>> const&) const
+    {
+        auto const between = [&](float4<T> const& a, float4<T> const& b, float4<T> const& c,
+                                 float4<T> const& d) {
+            auto const linear = [](T t, float4<T> const& from, float4<T> const& to) {
+                return float4<T>{from.x + t * (to.x - from.x), from.y + t * (to.y - from.y),
+                                 from.z + t * (to.z - from.z), from.w + t * (to.w - from.w)};
+            };
+            return linear(in.v, linear(in.u, a, b), linear(in.u, c, d));
+        };
+        return {between(p[0].position, p[1].position, p[2].position, p[3].position),
+                between(p[0].value, p[1].value, p[2].value, p[3].value)};
+    }
+};
+
+// Patches of a fraction of a pixel to more than the target, folded and one over the other, in one
+// plane too: triangles without a pixel, within 4x4, larger, and too large for 32 bits.
+RC_GTEST_PROP(TriangleStream, PatchesEqualTheGeneralWayInEveryBitAndCount, ())
+{
+    constexpr int kSize = 256;
+    test::PatchScene s(kSize, kSize, 1,
+                       *rc::gen::element(Format::R8G8B8A8_UNORM, Format::R32G32B32A32_FLOAT));
+    int const patches = *rc::gen::inRange(1, 12);
+    for (int i = 0; i < patches; ++i) {
+        float const extent = *rc::gen::element(0.7f, 4.0f, 20.0f, 60.0f, 124.0f, 300.0f);
+        auto const share = [] { return float(*rc::gen::inRange(0, 4097)) / 4096; };
+        float const x = kSize * share(), y = kSize * share(), flat = share();
+        bool const even = *rc::gen::arbitrary<bool>();
+        for (int k = 0; k < 4; ++k)
+            s.add(x + extent * (share() - 0.5f), y + extent * (share() - 0.5f),
+                  even ? 0.5f : 0.3f + 0.6f * (flat + share()) / 2,
+                  *rc::gen::element(1.0f, 1.0f, 0.5f, 3.0f),
+                  {share(), share(), share(), float(i + 1)});
+    }
+    float const factor = float(*rc::gen::inRange(1, 20));
+    s.desc.hull_shader =
+        bind_hull_shader(test::PatchHull<TessellatorDomain::Quad>{4, {test::uniform(factor)}}, {});
+    s.desc.domain_shader = bind_domain_shader(BilinearDomain{}, {});
+    s.desc.partitioning = Partitioning::Integer;
+    s.desc.output_primitive = OutputPrimitive::TriangleCw;
+    s.desc.input_control_points = s.call.control_points = 4;
+    s.call.topology = PrimitiveTopology::PatchList;
+    s.target.rasterizer.cull = *rc::gen::element(CullMode::None, CullMode::Back, CullMode::Front);
+    s.target.depth_stencil.depth_func = *rc::gen::element(Comparison::Less, Comparison::LessEqual);
+
+    CoverageCounts coverage(kSize, kSize);
+    DrawStatistics statistics[2];
+    std::vector<std::array<float, 4>> colors[2];
+    std::vector<std::uint32_t> depths[2];
+    for (int general = 0; general < 2; ++general) {
+        s.target.coverage = general ? &coverage : nullptr;
+        s.clear();
+        statistics[general] = s.draw();
+        for (int y = 0; y < kSize; ++y)
+            for (int x = 0; x < kSize; ++x) {
+                colors[general].push_back(s.color.load(x, y, 0));
+                depths[general].push_back(s.depth.codes()[s.depth.index(x, y)]);
+            }
+    }
+    RC_ASSERT(colors[0] == colors[1]);
+    RC_ASSERT(depths[0] == depths[1]);
+    RC_ASSERT(statistics[0] == statistics[1]);
 }
 
 } // namespace
