@@ -171,6 +171,44 @@ struct BilinearDomain {
     }
 };
 
+void use_patches(test::PatchScene& s, float factor)
+{
+    s.desc.hull_shader =
+        bind_hull_shader(test::PatchHull<TessellatorDomain::Quad>{4, {test::uniform(factor)}}, {});
+    s.desc.domain_shader = bind_domain_shader(BilinearDomain{}, {});
+    s.desc.partitioning = Partitioning::Integer;
+    s.desc.output_primitive = OutputPrimitive::TriangleCw;
+    s.desc.input_control_points = s.call.control_points = 4;
+    s.call.topology = PrimitiveTopology::PatchList;
+}
+
+struct Drawn {
+    DrawStatistics statistics;
+    std::vector<std::array<float, 4>> colors;
+    std::vector<std::uint32_t> depths;
+
+    friend bool operator==(Drawn const&, Drawn const&) = default;
+};
+// As triangles in the common state, and the general way, which coverage counts ask for.
+std::pair<Drawn, Drawn> both_ways(test::PatchScene& s)
+{
+    CoverageCounts coverage(s.width, s.height);
+    auto const drawn = [&](CoverageCounts* counts) {
+        s.target.coverage = counts;
+        s.clear();
+        Drawn d;
+        d.statistics = s.draw();
+        for (int y = 0; y < s.height; ++y)
+            for (int x = 0; x < s.width; ++x) {
+                d.colors.push_back(s.color.load(x, y, 0));
+                d.depths.push_back(s.depth.codes()[s.depth.index(x, y)]);
+            }
+        return d;
+    };
+    Drawn const fast = drawn(nullptr);
+    return {fast, drawn(&coverage)};
+}
+
 // Patches of a fraction of a pixel to more than the target, folded and one over the other, in one
 // plane too: triangles without a pixel, within 4x4, larger, and too large for 32 bits.
 RC_GTEST_PROP(TriangleStream, PatchesEqualTheGeneralWayInEveryBitAndCount, ())
@@ -191,34 +229,37 @@ RC_GTEST_PROP(TriangleStream, PatchesEqualTheGeneralWayInEveryBitAndCount, ())
                   *rc::gen::element(1.0f, 1.0f, 0.5f, 3.0f),
                   {share(), share(), share(), float(i + 1)});
     }
-    float const factor = float(*rc::gen::inRange(1, 20));
-    s.desc.hull_shader =
-        bind_hull_shader(test::PatchHull<TessellatorDomain::Quad>{4, {test::uniform(factor)}}, {});
-    s.desc.domain_shader = bind_domain_shader(BilinearDomain{}, {});
-    s.desc.partitioning = Partitioning::Integer;
-    s.desc.output_primitive = OutputPrimitive::TriangleCw;
-    s.desc.input_control_points = s.call.control_points = 4;
-    s.call.topology = PrimitiveTopology::PatchList;
+    use_patches(s, float(*rc::gen::inRange(1, 20)));
     s.target.rasterizer.cull = *rc::gen::element(CullMode::None, CullMode::Back, CullMode::Front);
     s.target.depth_stencil.depth_func = *rc::gen::element(Comparison::Less, Comparison::LessEqual);
+    auto const [fast, general] = both_ways(s);
+    RC_ASSERT(fast == general);
+}
 
-    CoverageCounts coverage(kSize, kSize);
-    DrawStatistics statistics[2];
-    std::vector<std::array<float, 4>> colors[2];
-    std::vector<std::uint32_t> depths[2];
-    for (int general = 0; general < 2; ++general) {
-        s.target.coverage = general ? &coverage : nullptr;
-        s.clear();
-        statistics[general] = s.draw();
-        for (int y = 0; y < kSize; ++y)
-            for (int x = 0; x < kSize; ++x) {
-                colors[general].push_back(s.color.load(x, y, 0));
-                depths[general].push_back(s.depth.codes()[s.depth.index(x, y)]);
-            }
-    }
-    RC_ASSERT(colors[0] == colors[1]);
-    RC_ASSERT(depths[0] == depths[1]);
-    RC_ASSERT(statistics[0] == statistics[1]);
+// Eight triangles of 59 x 59 pixels are more than a queue holds.
+TEST(TriangleStream, LargeTrianglesFillTheQueueMoreThanOnce)
+{
+    test::PatchScene s(256, 256);
+    for (int k = 0; k < 4; ++k)
+        s.add(60.3f + 118 * float(k & 1), 60.7f + 118 * float(k >> 1), 0.5f, 1,
+              {float(k), float(k & 1), 0.25f, 1});
+    use_patches(s, 2);
+    auto const [fast, general] = both_ways(s);
+    EXPECT_TRUE(fast == general);
+    EXPECT_EQ(fast.statistics.samples_passed, 118u * 118u);
+}
+
+// A patch of two triangles, a small one and, over it in the same plane, one of 84 x 4 pixels: the
+// first one's colours stay.
+TEST(TriangleStream, TooLargeForThirtyTwoBitsComesAfterWhatWaits)
+{
+    test::PatchScene s(256, 256);
+    s.add(100, 100, 0.5f, 1, {1, 0, 0, 1}).add(104, 100, 0.5f, 1, {0, 1, 0, 1});
+    s.add(100, 104, 0.5f, 1, {0, 0, 1, 1}).add(20, 101, 0.5f, 1, {1, 1, 1, 1});
+    use_patches(s, 1);
+    auto const [fast, general] = both_ways(s);
+    EXPECT_TRUE(fast == general);
+    EXPECT_GT(fast.statistics.samples_passed, 100u);
 }
 
 } // namespace
