@@ -18,11 +18,24 @@ if [ -d ../shared/peers ]; then
     grep -q avx512f /proc/cpuinfo && bound=bound_v4_nofma
     make -s -C ../shared/peers BUILD="$PWD/build/peers" "$PWD/build/peers/$bound"
 fi
+# Draws of one factor beside llvmpipe's, taking turns: where other programs use the machine too, what is
+# compared must be a second apart, not a minute.
+draws() {
+    ours_at() {
+        "$bin/bench_draw" --benchmark_filter="$1" --benchmark_min_time=0.3 2>/dev/null | awk '
+            /^whole_frame/ { split($1, a, "[:/]"); print "our frame", a[3], a[5], $2 }
+            /^geometry_only/ { split($1, a, "/"); print "our geometry", a[2], 1, $2 }'
+    }
+    for factor in 3 10 17 25 64; do
+        ours_at "whole_frame/tess:$factor/"
+        LP_NUM_THREADS=2 "$bin/peer_llvmpipe" "$factor" | sed -n 's/^frame/llvmpipe frame/p'
+        ours_at "whole_frame/tess:$factor/threads:2|geometry_only/$factor/"
+        LP_NUM_THREADS=0 "$bin/peer_llvmpipe" "$factor" | sed -n 's/^geometry/llvmpipe geometry/p'
+        ours_at "geometry_only/$factor/"
+    done
+}
 # Google Benchmark's lines as "OUR KIND ARGUMENT THREADS VALUE".
 ours() {
-    "$bin/bench_draw" --benchmark_min_time=0.3 2>/dev/null | awk '
-        /^whole_frame/ { split($1, a, "[:/]"); print "our frame", a[3], a[5], $2 }
-        /^geometry_only/ { split($1, a, "/"); print "our geometry", a[2], 1, $2 }'
     "$bin/bench_domain_shader" --benchmark_filter='gregory_quad_(un)?counted/' --benchmark_min_time=0.3 2>/dev/null |
         awk '/^gregory_quad/ { split($1, a, "/"); for (i = 2; i <= NF; ++i) if ($i ~ /^Meval/) { split($i, v, "="); print "our", a[1], a[2], 1, rate(v[2]) } }
              function rate(s) { sub("/s", "", s); if (s ~ /k$/) { sub("k", "", s); return s * 1000 } return s + 0 }'
@@ -39,9 +52,8 @@ ours() {
 rounds=${ROUNDS:-3}
 for round in $(seq "$rounds"); do
     echo "round $round of $rounds" >&2
+    draws >>"$log"
     ours >>"$log"
-    LP_NUM_THREADS=2 "$bin/peer_llvmpipe" | sed 's/^/llvmpipe2 /' >>"$log"
-    LP_NUM_THREADS=0 "$bin/peer_llvmpipe" | grep geometry | sed 's/^/llvmpipe0 /' >>"$log"
     "$bin/peer_embree" | sed 's/^/embree /' >>"$log"
     "$bin/peer_opensubdiv" | sed 's/^/opensubdiv /' >>"$log"
     "$bin/peer_opensubdiv_subdivision" | sed 's/^/opensubdiv /' >>"$log"
@@ -68,9 +80,9 @@ awk '
         printf "%-52s %10s %10s %-9s %7s\n", "medians", "tessemu", "peer", "", "ratio"
         n = split("3 10 17 25 64", f, " ")
         for (i = 1; i <= n; ++i)
-            row("frame, factor " f[i] ", 2 threads : llvmpipe", median("our frame " f[i] " 2"), median("llvmpipe2 frame " f[i]), "ms", 0)
+            row("frame, factor " f[i] ", 2 threads : llvmpipe", median("our frame " f[i] " 2"), median("llvmpipe frame " f[i]), "ms", 0)
         for (i = 1; i <= n; ++i)
-            row("geometry, factor " f[i] ", 1 thread : llvmpipe", median("our geometry " f[i] " 1"), median("llvmpipe0 geometry " f[i]), "ms", 0)
+            row("geometry, factor " f[i] ", 1 thread : llvmpipe", median("our geometry " f[i] " 1"), median("llvmpipe geometry " f[i]), "ms", 0)
         for (i = 1; i <= n; ++i)
             row("frame, factor " f[i] ", 2 threads : 1 thread", median("our frame " f[i] " 2"), median("our frame " f[i] " 1"), "ms", 0)
         row("bound kernel, N=17, 2 threads : 1 thread", median("bound 17 2"), median("bound 17 1"), "Meval/s", 1)

@@ -4,7 +4,7 @@
 //
 // Prints "frame FACTOR MILLISECONDS" and "geometry FACTOR MILLISECONDS", medians; geometry is with
 // the rasterizer discarded. LP_NUM_THREADS sets llvmpipe's raster threads; its geometry side is one
-// thread. Usage: peer_llvmpipe [PICTURE.png]
+// thread. Usage: peer_llvmpipe [FACTOR ...] [PICTURE.png], a picture of the last factor.
 //
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/scene.h"
@@ -169,7 +169,7 @@ double median_ms(std::function<void()> const& work)
     return times[times.size() / 2];
 }
 
-void run(char const* picture)
+void run(std::vector<int> const& factors, char const* picture)
 {
     BenchScene const scene;
     std::vector<float> const points = control_points(scene);
@@ -224,7 +224,7 @@ void run(char const* picture)
     glDisable(GL_CULL_FACE);
     glClearColor(0.93f, 0.94f, 0.96f, 1);
 
-    for (int factor : {3, 10, 17, 25, 64}) {
+    for (int factor : factors) {
         glUniform1f(glGetUniformLocation(program, "level"), float(factor));
         // One call must not tessellate past 65,535 vertices: its indices have 16 bits.
         int const segments = std::min(63, factor | 1);
@@ -237,7 +237,7 @@ void run(char const* picture)
             glFinish();
         };
         std::printf("frame %d %.4f\n", factor, median_ms(draw));
-        if (picture && factor == 17) {
+        if (picture && factor == factors.back()) {
             ColorTarget image(kSize, kSize);
             std::vector<std::byte> pixels(std::size_t(kSize) * kSize * 4);
             glReadPixels(0, 0, kSize, kSize, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
@@ -261,5 +261,13 @@ void run(char const* picture)
 
 int main(int argc, char** argv)
 {
-    tessemu::run(argc > 1 ? argv[1] : nullptr);
+    std::vector<int> factors;
+    char const* picture = nullptr;
+    for (int i = 1; i < argc; ++i)
+        if (int const factor = std::atoi(argv[i]))
+            factors.push_back(factor);
+        else
+            picture = argv[i];
+    if (factors.empty()) factors = {3, 10, 17, 25, 64};
+    tessemu::run(factors, picture);
 }
