@@ -85,11 +85,13 @@ private:
                     return raster_->stream(stages_, primitives_, vertices, p, count, wave[i],
                                            memory_.parts());
                 auto worker = memory_.parts().take(stages_.tessellator_state());
-                if (counts_only) // nobody looks at the points
-                    stages_.run_by_patch(wave[i], *worker->patterns, primitives_, vertices, p,
+                if (counts_only) { // nobody looks at the points
+                    stages_.run_by_patch(worker->chunk, *worker->patterns, primitives_, vertices, p,
                                          count, [](std::size_t) {});
-                else
+                    wave[i].counters = worker->chunk.counters;
+                } else {
                     stages_.run(wave[i], *worker->patterns, primitives_, vertices, p, count);
+                }
                 memory_.parts().give(std::move(worker));
                 if (raster_) raster_->assemble(stages_, wave[i]);
             });
@@ -132,40 +134,39 @@ private:
         VertexCache cache(options_.vertex_cache, limit);
         std::vector<char> shaded(limit, 0);
         constexpr std::size_t kBlock = 1 << 16, kPiece = 1 << 9;
-        std::vector<std::uint32_t> fresh, repeated;
         StageCounters all;
 
-        auto const run = [&](std::vector<std::uint32_t> const& ids, float* outputs) {
+        auto const run = [&](std::span<std::uint32_t const> ids, float* outputs) {
             std::size_t const pieces = (ids.size() + kPiece - 1) / kPiece;
             std::vector<StageCounters> counters(pieces);
             threads_.parallel_for(pieces, [&](std::size_t i) {
                 std::size_t const n = std::min(kPiece, ids.size() - i * kPiece);
-                vs.run(VertexBatch{std::span(ids).subspan(i * kPiece, n), call_, primitives_,
-                                   instance},
+                vs.run(VertexBatch{ids.subspan(i * kPiece, n), call_, primitives_, instance},
                        outputs, counters[i], vs_buffers_);
             });
             for (StageCounters const& c : counters) all += c;
         };
-        auto const flush = [&] {
-            all.input_touched += fresh.size();
-            run(fresh, shaded_vertices_.data());
-            if (all.features == 0 && !repeated.empty()) {
-                all.flops += all.flops / all.invocations * repeated.size();
-                all.invocations += repeated.size();
-                all.input_fetches += repeated.size();
-            } else {
-                run(repeated, nullptr);
+        std::span<std::uint32_t const> const stream = primitives_.stream;
+        std::vector<std::uint32_t> fresh(std::min(kBlock, stream.size())), repeated(fresh.size());
+        for (std::size_t first = 0; first < stream.size(); first += kBlock) {
+            std::size_t fresh_ones = 0, repeated_ones = 0;
+            for (std::uint32_t v : stream.subspan(first, std::min(kBlock, stream.size() - first))) {
+                bool const miss = !cache.access(v), again = shaded[v];
+                fresh[fresh_ones] = repeated[repeated_ones] = v;
+                fresh_ones += miss & !again;
+                repeated_ones += miss & again;
+                shaded[v] = 1;
             }
-            fresh.clear();
-            repeated.clear();
-        };
-        for (std::uint32_t v : primitives_.stream) {
-            if (cache.access(v)) continue;
-            (shaded[v] ? repeated : fresh).push_back(v);
-            shaded[v] = 1;
-            if (fresh.size() + repeated.size() == kBlock) flush();
+            all.input_touched += fresh_ones;
+            run(std::span(fresh).first(fresh_ones), shaded_vertices_.data());
+            if (all.features == 0 && repeated_ones > 0) {
+                all.flops += all.flops / all.invocations * repeated_ones;
+                all.invocations += repeated_ones;
+                all.input_fetches += repeated_ones;
+            } else {
+                run(std::span(repeated).first(repeated_ones), nullptr);
+            }
         }
-        flush();
         counters_.vertex += all;
         stats_.pipeline.VSInvocations = counters_.vertex.invocations;
     }

@@ -45,11 +45,13 @@ public:
     explicit TouchedElements(std::size_t elements) : touched_(elements) {}
 
     void mark(std::size_t element) { mark(touched_[element]); }
-    /// Elements first + i for each set bit i of `bits`.
-    void mark_run(std::size_t first, std::uint32_t bits)
+    /// Elements first + i for each set bit i of `bits`. Whether one was not marked yet.
+    bool mark_run(std::size_t first, std::uint32_t bits)
     {
         std::uint8_t* const marks = touched_.data() + first;
-        for (; bits; bits &= bits - 1) mark(marks[std::countr_zero(bits)]);
+        bool fresh = false;
+        for (; bits; bits &= bits - 1) fresh |= mark(marks[std::countr_zero(bits)]);
+        return fresh;
     }
     /// The elements of the lanes in `bits`, those that there are. Whether one was not marked yet.
     template <int N> bool mark_each(IntLanes<N> index, std::uint32_t bits)
@@ -155,8 +157,10 @@ template <class T, int N> void count_fetch(int slot, IntLanes<N> index, bool run
         if (!s) return;
         s->count += execution.active_lanes;
         if (!s->touched) return;
-        if (run) return s->touched->mark_run(std::size_t(index.raw[0]), execution.active_bits);
-        s->touched->mark_each(index, execution.active_bits);
+        if (run)
+            s->touched->mark_run(std::size_t(index.raw[0]), execution.active_bits);
+        else
+            s->touched->mark_each(index, execution.active_bits);
     }
 }
 } // namespace detail

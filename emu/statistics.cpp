@@ -88,9 +88,9 @@ StageCounters& StageCounters::operator+=(StageCounters const& o)
     constant_fetches += o.constant_fetches, constant_touched += o.constant_touched;
     factor_fetches += o.factor_fetches, factor_touched += o.factor_touched;
     output_fetches += o.output_fetches, output_touched += o.output_touched;
-    buffer_slots = std::max(buffer_slots, o.buffer_slots);
-    for (std::uint32_t i = 0; i < o.buffer_slots; ++i)
-        buffer_fetches[i] += o.buffer_fetches[i], buffer_writes[i] += o.buffer_writes[i];
+    if (buffers.size() < o.buffers.size()) buffers.resize(o.buffers.size());
+    for (std::size_t i = 0; i < o.buffers.size(); ++i)
+        buffers[i].fetches += o.buffers[i].fetches, buffers[i].writes += o.buffers[i].writes;
     shared_loads += o.shared_loads, shared_stores += o.shared_stores;
     shared_out_of_range += o.shared_out_of_range;
     features |= o.features;
@@ -116,7 +116,7 @@ void StageBuffers::report(StageCounters const& counters, StageStatistics& out) c
 {
     for (std::size_t i = 0; i < resources_.size(); ++i) {
         ResourceInfo const& r = resources_[i];
-        std::uint64_t const n = counters.buffer_fetches[std::size_t(r.slot)];
+        std::uint64_t const n = counters.of_buffer(r.slot).fetches;
         out.fetches.push_back(
             {r.name, r.kind, n, n * r.element_bytes, touched_[i]->count() * r.element_bytes});
     }
@@ -126,7 +126,7 @@ std::uint64_t StageBuffers::written_bytes(StageCounters const& counters) const
 {
     std::uint64_t bytes = 0;
     for (ResourceInfo const& r : resources_)
-        bytes += counters.buffer_writes[std::size_t(r.slot)] * r.element_bytes;
+        bytes += counters.of_buffer(r.slot).writes * r.element_bytes;
     return bytes;
 }
 

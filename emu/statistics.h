@@ -64,12 +64,18 @@ struct StageCounters {
     std::uint64_t constant_fetches = 0, constant_touched = 0; ///< patch constants
     std::uint64_t factor_fetches = 0, factor_touched = 0;     ///< tess factors, by a domain shader
     std::uint64_t output_fetches = 0, output_touched = 0; ///< a hull shader's own control points
-    std::array<std::uint64_t, kBufferSlots> buffer_fetches{}, buffer_writes{};
-    std::uint32_t buffer_slots = 0; ///< the first ones, which the shader uses
+    struct BufferCounts {
+        std::uint64_t fetches = 0, writes = 0;
+    };
+    std::vector<BufferCounts> buffers; ///< by slot; none until the stage has run
     std::uint64_t shared_loads = 0, shared_stores = 0, shared_out_of_range = 0;
     std::uint32_t features = 0; ///< ShaderFeature bits that its shader showed
 
     StageCounters& operator+=(StageCounters const& o);
+    BufferCounts of_buffer(int slot) const
+    {
+        return std::size_t(slot) < buffers.size() ? buffers[std::size_t(slot)] : BufferCounts{};
+    }
 };
 
 /// Elements of a stage's buffers that a draw touched, one per slot.
@@ -109,10 +115,11 @@ public:
     {
         counters_.flops += execution.take();
         counters_.features |= execution.features;
+        if (counters_.buffers.size() < execution.buffer_slots)
+            counters_.buffers.resize(execution.buffer_slots);
         for (std::uint32_t i = 0; i < execution.buffer_slots; ++i)
-            counters_.buffer_fetches[i] += slots_[i].count,
-                counters_.buffer_writes[i] += slots_[i].written;
-        counters_.buffer_slots = std::max(counters_.buffer_slots, execution.buffer_slots);
+            counters_.buffers[i].fetches += slots_[i].count,
+                counters_.buffers[i].writes += slots_[i].written;
         execution = saved_;
         site_state = saved_sites_;
     }

@@ -20,8 +20,8 @@ namespace tessemu {
 /// Where rows of a patch lie, in buffers of floats, masks and indices. An order names each input
 /// once.
 template <int N> struct TableRows {
-    Buffer<float> const&
-        weights; ///< [input][row] from first_weight on; 0 of inputs that are not in it
+    /// [input][row] from first_weight on; 0 of inputs that are not in the row.
+    Buffer<float> const& weights;
     std::int32_t first_weight;
     std::int32_t rows;                  ///< from input to input
     Buffer<std::uint32_t> const& masks; ///< [row] from first_mask on: bit i, input i is in it
@@ -55,7 +55,8 @@ template <int N> struct RowSpan {
     /// rows among N neighbours by a load and a permutation, pairs of neighbours two by two.
     ///
     /// \param more  floats that there are behind p[high]
-    template <class Work> auto with_loader(std::int64_t more, Work const& work) const
+    template <class Work>
+    [[gnu::always_inline]] auto with_loader(std::int64_t more, Work const& work) const
     {
         using Int = IntLanes<N>;
         if (is_run) return work([this](float const* p) { return Lanes<N>::load(p + low); });
@@ -70,8 +71,10 @@ template <int N> struct RowSpan {
     }
 };
 
-/// Bit i is set where `order` names input i, if it names each of n once; 0 otherwise.
-template <int N> std::uint32_t inputs_named(std::uint8_t const* order, int n)
+/// Bit i is set where `order` names input i, if it names each of n once; 0 otherwise. N more bytes
+/// than n, at most, are read.
+template <int N>
+[[gnu::always_inline]] inline std::uint32_t inputs_named(std::uint8_t const* order, int n)
 {
     using Int = IntLanes<N>;
     Int named(0);
@@ -114,8 +117,10 @@ std::optional<float3<Counted<Lanes<N>>>> sum_table_rows(ControlPoints<P> const& 
         std::size_t(t.first_order) + std::size_t(n) > orders.size())
         return {};
 
-    std::uint8_t order[32 + N] = {};
-    std::copy_n(orders.data() + t.first_order, n, order);
+    std::uint8_t const* order = orders.data() + t.first_order;
+    std::uint8_t last_order[32 + N];
+    if (std::size_t(t.first_order) + std::size_t(n + N) > orders.size())
+        order = std::copy_n(order, n, last_order) - n;
     std::uint32_t const named = detail::inputs_named<N>(order, n);
     if (named == 0) return {};
 
@@ -164,7 +169,9 @@ std::optional<float3<Counted<Lanes<N>>>> sum_table_rows(ControlPoints<P> const& 
     if (FetchSlot* const s = detail::bound_slot(t.masks.slot())) {
         s->count += execution.active_lanes;
         // Whoever marks a mask marks the row's weights as well.
-        fresh = !s->touched || s->touched->mark_each(at_mask, active);
+        fresh = !s->touched || (detail::is_run(at_mask, t.masks.elements().size())
+                                    ? s->touched->mark_run(std::size_t(at_mask.raw[0]), active)
+                                    : s->touched->mark_each(at_mask, active));
     }
     if (FetchSlot* const s = detail::bound_slot(t.order.slot())) {
         s->count += std::uint64_t(n) * execution.active_lanes;

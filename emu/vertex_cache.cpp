@@ -41,16 +41,19 @@ VertexCacheModel vertex_cache_from_name(std::string_view name)
                 "', it must be none, fifo:N, lru:N (N at least 1) or infinite");
 }
 
-VertexCache::VertexCache(VertexCacheModel model, std::uint32_t vertex_id_limit)
-    : model_(model),
-      resident_(model.kind == Kind::None ? 0 : vertex_id_limit)
+VertexCache::VertexCache(VertexCacheModel model, std::uint32_t vertex_id_limit) : model_(model)
 {
-    if (model.kind == Kind::Fifo)
-        ring_.assign(std::min(model.entries, std::max(vertex_id_limit, 1u)), kNone);
     if (model.kind == Kind::Lru) {
+        resident_.resize(vertex_id_limit);
         newer_.resize(vertex_id_limit);
         older_.resize(vertex_id_limit);
+        return;
     }
+    entries_ = model.kind == Kind::Infinite ? std::uint64_t(1) << 62
+               : model.kind == Kind::None   ? 0
+                                            : model.entries;
+    misses_ = entries_;
+    entered_.resize(vertex_id_limit);
 }
 
 void VertexCache::unlink(std::uint32_t v)
@@ -67,12 +70,10 @@ void VertexCache::link_newest(std::uint32_t v)
     newest_ = v;
 }
 
-bool VertexCache::access_other(std::uint32_t vertex)
+bool VertexCache::access_lru(std::uint32_t vertex)
 {
-    if (model_.kind == Kind::None) return false;
     bool const hit = resident_[vertex];
     resident_[vertex] = 1;
-    if (model_.kind == Kind::Infinite) return hit;
     if (hit) {
         unlink(vertex);
     } else if (size_ == model_.entries) {

@@ -34,27 +34,29 @@ public:
     /// True if `vertex` is found; otherwise it enters and the vertex shader must run.
     bool access(std::uint32_t vertex)
     {
-        if (model_.kind != VertexCacheModel::Kind::Fifo) return access_other(vertex);
-        if (resident_[vertex]) return true;
-        resident_[vertex] = 1;
-        std::uint32_t& oldest = ring_[next_];
-        if (oldest != kNone) resident_[oldest] = 0;
-        oldest = vertex;
-        next_ = next_ + 1 == ring_.size() ? 0 : next_ + 1;
-        return false;
+        if (model_.kind == VertexCacheModel::Kind::Lru) return access_lru(vertex);
+        // What entered n misses ago is n from the door: without a branch, for hits follow no pattern.
+        std::uint64_t& entered = entered_[vertex];
+        bool const hit = misses_ - entered < entries_;
+        misses_ += !hit;
+        entered = hit ? entered : misses_;
+        return hit;
     }
 
 private:
-    bool access_other(std::uint32_t vertex);
+    bool access_lru(std::uint32_t vertex);
     void unlink(std::uint32_t vertex);
     void link_newest(std::uint32_t vertex);
 
     static constexpr std::uint32_t kNone = 0xffffffffu;
     VertexCacheModel model_;
+    // Other than Lru: the miss at which a vertex last entered; the first is number entries_ + 1, so
+    // that 0 is as good as never.
+    std::uint64_t entries_ = 0, misses_ = 0;
+    std::vector<std::uint64_t> entered_;
+    // Lru: a list from oldest to newest.
     std::vector<char> resident_;
-    std::vector<std::uint32_t> ring_; // of Fifo, the oldest at next_
-    std::size_t next_ = 0;
-    std::vector<std::uint32_t> newer_, older_; // of Lru, a list from oldest to newest
+    std::vector<std::uint32_t> newer_, older_;
     std::uint32_t oldest_ = kNone, newest_ = kNone, size_ = 0;
 };
 
