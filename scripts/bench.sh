@@ -27,11 +27,11 @@ draws() {
             /^geometry_only/ { split($1, a, "/"); print "our geometry", a[2], 1, $2 }'
     }
     for factor in 3 10 17 25 64; do
-        ours_at "whole_frame/tess:$factor/"
-        LP_NUM_THREADS=2 "$bin/peer_llvmpipe" "$factor" | sed -n 's/^frame/llvmpipe frame/p'
-        ours_at "whole_frame/tess:$factor/threads:2|geometry_only/$factor/"
-        LP_NUM_THREADS=0 "$bin/peer_llvmpipe" "$factor" | sed -n 's/^geometry/llvmpipe geometry/p'
-        ours_at "geometry_only/$factor/"
+        ours_at "whole_frame/tess:$factor/threads:2"
+        LP_NUM_THREADS=2 "$bin/peer_llvmpipe" "$factor" | sed -n 's/^frame/llvmpipe2 frame/p'
+        ours_at "whole_frame/tess:$factor/|geometry_only/$factor/"
+        LP_NUM_THREADS=0 "$bin/peer_llvmpipe" "$factor" | sed 's/^/llvmpipe1 /'
+        ours_at "whole_frame/tess:$factor/threads:1|geometry_only/$factor/"
     done
 }
 # Google Benchmark's lines as "OUR KIND ARGUMENT THREADS VALUE".
@@ -80,9 +80,11 @@ awk '
         printf "%-52s %10s %10s %-9s %7s\n", "medians", "tessemu", "peer", "", "ratio"
         n = split("3 10 17 25 64", f, " ")
         for (i = 1; i <= n; ++i)
-            row("frame, factor " f[i] ", 2 threads : llvmpipe", median("our frame " f[i] " 2"), median("llvmpipe frame " f[i]), "ms", 0)
+            row("frame, factor " f[i] ", 2 threads : llvmpipe", median("our frame " f[i] " 2"), median("llvmpipe2 frame " f[i]), "ms", 0)
         for (i = 1; i <= n; ++i)
-            row("geometry, factor " f[i] ", 1 thread : llvmpipe", median("our geometry " f[i] " 1"), median("llvmpipe geometry " f[i]), "ms", 0)
+            row("frame, factor " f[i] ", 1 thread : llvmpipe", median("our frame " f[i] " 1"), median("llvmpipe1 frame " f[i]), "ms", 0)
+        for (i = 1; i <= n; ++i)
+            row("geometry, factor " f[i] ", 1 thread : llvmpipe", median("our geometry " f[i] " 1"), median("llvmpipe1 geometry " f[i]), "ms", 0)
         for (i = 1; i <= n; ++i)
             row("frame, factor " f[i] ", 2 threads : 1 thread", median("our frame " f[i] " 2"), median("our frame " f[i] " 1"), "ms", 0)
         row("bound kernel, N=17, 2 threads : 1 thread", median("bound 17 2"), median("bound 17 1"), "Meval/s", 1)
