@@ -24,9 +24,8 @@ struct PatchOnScreen {
 class CoveredPixels {
 public:
     static constexpr int N = kRasterLanes;
-    using F = Lanes<N>;
     using I = IntLanes<N>;
-    static constexpr std::size_t kTriangles = 512, kPixels = 4096;
+    static constexpr std::size_t kTriangles = 512, kPixels = 4096; ///< for which there is room
 
     explicit CoveredPixels(FragmentShading& shading) : shading_(shading) {}
 
@@ -34,7 +33,7 @@ public:
     void bind(RasterSetup const& setup, bool front_is_clockwise);
     /// Starts a chunk.
     void begin() { fragments_ = 0; }
-    /// Starts a patch, which must outlive it.
+    /// Starts a patch, which must last until the next finish(). Nothing may be left of another.
     void begin(PatchOnScreen const& patch) { patch_ = &patch; }
 
     /// Triangles of a group of lanes.
@@ -64,10 +63,11 @@ public:
     std::uint16_t place[kPixels + 32], owner[kPixels + 32];
 
 private:
+    using F = Lanes<N>;
     static constexpr std::size_t kTableRow = kTriangles + 32;
     enum Row {
-        kPosition,            // three
-        kTag = kPosition + 3, //
+        kPosition, // three, as Group's
+        kTag = kPosition + 3,
         kBox,
         kA1,
         kB1,

@@ -11,7 +11,6 @@ namespace tessemu {
 
 class TriangleCoverage {
     static constexpr int N = kRasterLanes;
-    using F = Lanes<N>;
     using I = IntLanes<N>;
     using I8 = IntLanes<8>;
 

@@ -67,6 +67,13 @@ awk '
         for (i = 2; i <= n; ++i) for (j = i; j > 1 && v[j] + 0 < v[j - 1] + 0; --j) { t = v[j]; v[j] = v[j - 1]; v[j - 1] = t }
         return n ? v[int((n + 1) / 2)] : 0
     }
+    # Of the rounds: the peer by the two runs of ours around it.
+    function turns(what, ours, peer,   n, i, a, b) {
+        split(values[ours], a, " ")
+        n = split(values[peer], b, " ")
+        for (i = 1; i <= n; ++i) values["turns " what] = values["turns " what] " " 2 * b[i] / (a[2 * i - 1] + a[2 * i])
+        if (n) printf "%-52s %10.2f %10.2f %-9s %7.2f\n", what, median(ours), median(peer), "ms", median("turns " what)
+    }
     function row(what, a, b, unit, higher,   r) {
         if (a == 0 || b == 0) return
         r = higher ? a / b : b / a
@@ -80,11 +87,11 @@ awk '
         printf "%-52s %10s %10s %-9s %7s\n", "medians", "tessemu", "peer", "", "ratio"
         n = split("3 10 17 25 64", f, " ")
         for (i = 1; i <= n; ++i)
-            row("frame, factor " f[i] ", 2 threads : llvmpipe", median("our frame " f[i] " 2"), median("llvmpipe2 frame " f[i]), "ms", 0)
+            turns("frame, factor " f[i] ", 2 threads : llvmpipe", "our frame " f[i] " 2", "llvmpipe2 frame " f[i])
         for (i = 1; i <= n; ++i)
-            row("frame, factor " f[i] ", 1 thread : llvmpipe", median("our frame " f[i] " 1"), median("llvmpipe1 frame " f[i]), "ms", 0)
+            turns("frame, factor " f[i] ", 1 thread : llvmpipe", "our frame " f[i] " 1", "llvmpipe1 frame " f[i])
         for (i = 1; i <= n; ++i)
-            row("geometry, factor " f[i] ", 1 thread : llvmpipe", median("our geometry " f[i] " 1"), median("llvmpipe1 geometry " f[i]), "ms", 0)
+            turns("geometry, factor " f[i] ", 1 thread : llvmpipe", "our geometry " f[i] " 1", "llvmpipe1 geometry " f[i])
         for (i = 1; i <= n; ++i)
             row("frame, factor " f[i] ", 2 threads : 1 thread", median("our frame " f[i] " 2"), median("our frame " f[i] " 1"), "ms", 0)
         row("bound kernel, N=17, 2 threads : 1 thread", median("bound 17 2"), median("bound 17 1"), "Meval/s", 1)
